@@ -17,7 +17,7 @@ from benchmarks.contact_torture import run
 from corota import _core
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
-from corota.analysis.terms.contact.corners import sunk_corner
+from corota.analysis.terms.contact.messages import sunk_corner
 from corota.model.contact import METHODS
 from corota.model.loads import Fixed
 from tests.contracts.test_contact_gaps import (

@@ -45,7 +45,7 @@ def test_rows_and_columns_are_derivatives(method, law):
         pair.area = pair.full * 0.9
         pair.closed[:] = True
     states = []
-    for pair, terms, (p, q) in self._pairs(at.contact_state):
+    for pair, terms, (p, q) in self.pairs(at.contact_state):
         assert (terms.area > 0.1 * pair.full).sum() >= 2
         state = pair.states(terms, p, q)
         state[terms.area > 0.1 * pair.full] = [CLOSED, SLIPPING][pair.first > 0]
@@ -57,7 +57,7 @@ def test_rows_and_columns_are_derivatives(method, law):
         """Force of contact and the rows of all constraints, with the states as they are."""
         touch = self.evaluate(z, 1.0).contact_state
         out = []
-        for (pair, terms, (p, q)), s in zip(self._pairs(touch), states, strict=True):
+        for (pair, terms, (p, q)), s in zip(self.pairs(touch), states, strict=True):
             _, rp, _, rq, ratio = pair.rows(terms, s, p, q, self.slip_directions[pair.first])
             out += [-rp, np.where(s == SLIPPING, q - ratio * p, -rq)]
         return touch.force, np.concatenate(out)
@@ -66,7 +66,7 @@ def test_rows_and_columns_are_derivatives(method, law):
         up, down = equations(z + STEP * dz), equations(z - STEP * dz)
         return tuple((a - b) / (2.0 * STEP) for a, b in zip(up, down, strict=True))
 
-    coupling, _, _ = self._coupling(at.contact_state, states)
+    coupling, _, _ = self.coupling(at.contact_state, states)
     dz = rng.standard_normal(n + m)
     du, dp = dz[:n], dz[n:]
     force, rows = np.zeros(n), coupling.diagonal * dp

@@ -25,7 +25,7 @@ from corota.analysis.procedures.localization import localized
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
-from corota.analysis.terms.contact.peaks import missed_peaks
+from corota.analysis.terms.contact.messages import missed_peaks
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.display import brief
 from corota.errors import (

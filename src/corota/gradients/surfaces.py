@@ -227,7 +227,7 @@ def solve(
         )
     contact.slip_directions = {pair.first: np.ones(pair.n) for pair in term.pairs}
     right = RightHandSides(np.asfortranarray(rhs), np.asfortranarray(moved), np.zeros(rhs.shape[1]))
-    z, y, _ = contact._solve(at, [s.copy() for s in surfaces.states], right)
+    z, y, _ = contact.solve(at, [s.copy() for s in surfaces.states], right)
     return z, y
 
 

@@ -25,7 +25,7 @@ from corota.analysis.procedures.motion_start import (
     start_motion,
 )
 from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
-from corota.analysis.terms.contact.approach import Approach
+from corota.analysis.terms.contact.impact import Approach
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.analysis.terms.contact.relaxation import relax
 from corota.analysis.terms.damping import Damping

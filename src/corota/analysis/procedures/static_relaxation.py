@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.increment_loop import Attempt
-from corota.analysis.terms.contact.corners import sunk_corner
+from corota.analysis.terms.contact.messages import sunk_corner
 from corota.analysis.terms.contact.relaxation import relax
 from corota.errors import SingularError
 

@@ -43,8 +43,8 @@ if TYPE_CHECKING:
 
 # Parts that models without contact do not need.
 check_side = lazy("corota.analysis.terms.contact.side:check_side")
-corner_note = lazy("corota.analysis.terms.contact.advice:corner_note")
-fillet_note = lazy("corota.analysis.terms.contact.advice:fillet_note")
+corner_note = lazy("corota.analysis.terms.contact.messages:corner_note")
+fillet_note = lazy("corota.analysis.terms.contact.messages:fillet_note")
 contact_output = lazy("corota.analysis.terms.contact.output:output")
 what_gives_way = lazy("corota.analysis.terms.contact.messages:gives_way")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")

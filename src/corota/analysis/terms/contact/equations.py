@@ -11,33 +11,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.linear.saddle_point import SaddlePointSystem
 from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms
-from corota.analysis.rule import REST, Rule
-from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.gaps import ContactState, Kink
-from corota.analysis.terms.contact.holding import far, held, let_slip
 from corota.analysis.terms.contact.impact import impact_error
-from corota.analysis.terms.contact.kink_correction import along_kink, keeps_kink
-from corota.analysis.terms.contact.kinks import both_sides
-from corota.analysis.terms.contact.linearization import linearized
+from corota.analysis.terms.contact.kinks import along_kink, both_sides, keeps_kink
 from corota.analysis.terms.contact.messages import explanation
-from corota.analysis.terms.contact.pair import CLOSED
 from corota.analysis.terms.contact.pivoting import pivoted
-from corota.analysis.terms.contact.problem import RightHandSides
-from corota.analysis.terms.contact.state_choice import chosen
+from corota.analysis.terms.contact.problem import ContactProblem, RightHandSides
+from corota.analysis.terms.contact.states import chosen, columns
 from corota.analysis.terms.contact.tunneling import outside, passed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.linear.coupling import Coupling
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -51,8 +41,6 @@ MAX_EXTRA_CONTACT_ITERATIONS = 24
 PATIENCE = 8
 #: The same before states come from the whole linearized problem.
 ITERATIONS_BEFORE_PIVOTING = 3
-#: Corrections after which partly covered nodes keep their owners.
-CORRECTIONS_BEFORE_FREEZE = 4
 #: Displacement of an increment, relative to its first correction, that counts as a jump, driven by
 #: supports and by forces.
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
@@ -61,73 +49,14 @@ JUMP, JUMP_OF_FORCE = 10.0, 4.0
 FLOATS = -1
 
 
-class ContactEquations:
-    """A system with contact, for one increment.
-
-    Parameters
-    ----------
-    system : System
-    rule : Rule
-        What the increment makes of its unknowns.
-    """
-
-    def __init__(self, system: System, rule: Rule = REST) -> None:
-        self.system, self.rule = system, rule
-        self.evaluate = system.evaluate
-        self.contact_term: ContactTerm = system.contact_term
-        self.n = system.n_dofs
-        self.forget()
-
-    def forget(self) -> None:
-        """Begin an attempt at the increment."""
-        # Closed constraints stay closed while their pressure does.
-        self.last: States | None = None
-        if self.contact_term.at is not None and self.contact_term.at.states:
-            self.last = [s.copy() for s in self.contact_term.at.states]
-        self.seen: dict[bytes, int] = {}
-        self.cautious = False
-        self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.contact_term.pairs]
-        self.single = self.sliding = self.corrections = self.pivoted = 0
-        self.pivoting = False  # whether states come from the whole linearized problem
-        self.least, self.waited = np.inf, 0
-        self.stage = ""  # how the last correction was found
-        self.relaxing = False  # whether the bodies may move to another equilibrium
-        #: Previous position in relaxation, for the tunneling check.
-        self.since: Floats | None = None
-        self.contact_term.springs = None
-        #: Kink of the contact surfaces at which the bodies may rest, and how often one
-        #: was tried.
-        self.kink: Kink | None = None
-        self.kinks = self.beyond = 0
-        #: Whether the kink is that of the committed state, which may lie behind by now.
-        self.inherits = False
-        self.places: list[Floats] = []  # displacements of the last three evaluations
-        self.first_move = 0.0  # of the first correction [length]
-        self.loose = ""  # bodies that were unconstrained until contact was closed
-        self.slip_directions: dict[
-            int, Floats
-        ] = {}  # of slipping tractions, by the pair's first multiplier
-
-    def go_on(self) -> None:
-        """Begin again at the equilibrium that was found, with its states."""
-        last, kink, first = self.last, self.kink, self.first_move
-        self.forget()
-        self.last, self.kink, self.first_move = last, kink, first
+class ContactEquations(ContactProblem):
+    """A system with contact, for one increment: see :class:`ContactProblem`."""
 
     # -- the protocol of Newton's method -----------------------------------------------
 
     def start(self, u: Floats) -> Floats:
         """Displacements with the committed multipliers."""
         return np.concatenate([u, self.contact_term.committed])
-
-    @property
-    def kink(self) -> Kink | None:
-        """Kink of the contact surfaces at which the bodies may rest."""
-        return self.contact_term.trial_kink
-
-    @kink.setter
-    def kink(self, kink: Kink | None) -> None:
-        self.contact_term.trial_kink = kink
 
     def residual_norms(self, at: Evaluation, z: Floats) -> ResidualNorms:
         """Size of the residual, of equilibrium and of the contact conditions."""
@@ -153,17 +82,6 @@ class ContactEquations:
     def return_tangent(self, at: Evaluation) -> None:
         """Keep the tangent: states of contact are used later."""
 
-    def complementarity(self, at: Evaluation) -> tuple[float, int, int]:
-        """Largest contact residual as a force; its pair and constraint."""
-        worst = (0.0, 0, 0)
-        for k, (pair, terms, (p, q)) in enumerate(self._pairs(at.contact_state)):
-            if pair.n:
-                complementarity = pair.violation(terms, p, q)
-                i = int(np.argmax(complementarity))
-                if complementarity[i] > worst[0]:
-                    worst = (float(complementarity[i]), k, i)
-        return worst
-
     def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
         """Newton correction of displacements and multipliers."""
         return self.correct(at, -at.residual, du_prescribed)
@@ -177,7 +95,7 @@ class ContactEquations:
                 return corrected
         self.pivoting = self.pivoting or self.waited >= ITERATIONS_BEFORE_PIVOTING
         if self.pivoting:
-            self._freeze()
+            self.freeze()
             found = pivoted(self, at, right_sides)
             if found is not None:
                 z, self.last, slip_directions = found
@@ -187,11 +105,11 @@ class ContactEquations:
                 }
                 self.pivoted += 1
                 self.stage = "contact states by pivoting"
-                return self._moved(z), -1
+                return self.moved(z), -1
         before = self.single
-        z, negative = self._columns(at, right_sides, self._choose(at.contact_state))
+        z, negative = columns(self, at, right_sides, chosen(self, at.contact_state))
         self.stage = "contact state changed at one node" if self.single > before else ""
-        return self._moved(z[:, 0]), negative
+        return self.moved(z[:, 0]), negative
 
     def inherit_kink(self) -> None:
         """Begin at the kink at which the committed equilibrium lies, if there is one.
@@ -201,105 +119,6 @@ class ContactEquations:
         kink = self.contact_term.kink
         if kink is not None and self.system.nlgeom and not self.contact_term.persistent:
             self.kink, self.inherits = replace(kink, base=None), True
-
-    # -- one linearization ---------------------------------------------------------------
-
-    def _moved(self, z: Floats) -> Floats:
-        """A correction, whose first size is kept."""
-        if not self.first_move:
-            self.first_move = float(np.abs(z[: self.n][~self.system.is_rotation]).max())
-        return z
-
-    def _freeze(self) -> None:
-        self.corrections += 1
-        for pair in self.contact_term.pairs:
-            pair.frozen = self.corrections >= CORRECTIONS_BEFORE_FREEZE
-
-    def _columns(
-        self,
-        at: Evaluation,
-        right_sides: RightHandSides,
-        states: States,
-        slip_directions: dict[tuple[int, int], float] | None = None,
-    ) -> tuple[Floats, int]:
-        """Solutions of one linearization, shape (n_dofs + n_multipliers, k)."""
-        self._freeze()
-        self.slip_directions = {
-            pair.first: pair.slip_direction(terms, q)
-            for pair, terms, (p, q) in self._pairs(at.contact_state)
-        }
-        for (k, i), slip_direction in (slip_directions or {}).items():
-            self.slip_directions[self.contact_term.pairs[k].first][i] = slip_direction
-        du, dp, negative, states = self._held(at, states, right_sides)
-        for (pair, terms, (p, q)), state in zip(self._pairs(at.contact_state), states, strict=True):
-            if pair.two:
-                # Slipping tractions follow the pressure; they are no unknowns of the solution.
-                ratio = pair.rows(terms, state, p, q, self.slip_directions[pair.first])[4]
-                now = np.outer(p, right_sides.own) + dp[pair.first : pair.first + pair.n]
-                new = ratio[:, None] * now - np.outer(q, right_sides.own)
-                slips = state != CLOSED
-                dp[pair.first + pair.n : pair.first + pair.width][slips] = new[slips]
-        return np.concatenate([du, dp]), negative
-
-    def _solve(
-        self, at: Evaluation, states: States, right_sides: RightHandSides
-    ) -> tuple[Floats, Floats, int]:
-        coupling, own, expected = self._coupling(at.contact_state, states)
-        force = right_sides.force + self.system.at_nodes(coupling.force)[:, None] * right_sides.own
-        rows = own[:, None] * right_sides.own
-        release = -at.contact_state.multipliers[:, None] * right_sides.own
-        du, dp, negative = self.border.solve(
-            at, coupling, force, rows, release, right_sides.constrained
-        )
-        return du, dp, negative - expected if negative >= 0 else -1
-
-    def _held(
-        self, at: Evaluation, states: States, right_sides: RightHandSides
-    ) -> tuple[Floats, Floats, int, States]:
-        """Correction for states that constrain the bodies, with the fewest changes."""
-        return held(self, at, states, right_sides)
-
-    def _let_slip(
-        self,
-        at: Evaluation,
-        states: States,
-        right_sides: RightHandSides,
-        found: tuple[Floats, Floats, int],
-    ) -> tuple[Floats, Floats, int, States]:
-        """Let constraints slip at once that a correction would load far beyond friction."""
-        return let_slip(self, at, states, right_sides, found)
-
-    def _far(self, du: Floats, right_sides: RightHandSides) -> bool:
-        """Whether a correction moves the surfaces beyond the contact search distance."""
-        return far(self, du, right_sides)
-
-    @property
-    def border(self) -> SaddlePointSystem:
-        """Linear algebra, kept with the system."""
-        border = self.contact_term.border
-        if border is None:
-            ties = sum(pair.width for pair in self.contact_term.pairs if pair.tied)
-            border = SaddlePointSystem(self.system, self.contact_term.n, ties)
-            self.contact_term.border = border
-        return border
-
-    def _pairs(self, contact_state: ContactState) -> Any:
-        return zip(
-            self.contact_term.pairs,
-            contact_state.terms,
-            self.contact_term.parts(contact_state.multipliers),
-            strict=True,
-        )
-
-    def _choose(self, contact_state: ContactState) -> States:
-        """States for the next correction; single changes once a set comes back."""
-        return chosen(self, contact_state)
-
-    def _coupling(
-        self, contact_state: ContactState, states: States
-    ) -> tuple[Coupling, Floats, int]:
-        """The border for states, its right-hand side, and its negative pivots."""
-        return linearized(self.contact_term, contact_state, states, self.slip_directions)
 
     # -- the end of an increment -------------------------------------------------------
 
@@ -350,7 +169,7 @@ class ContactEquations:
                 "the equilibrium found is far from the last one: the bodies would jump in this "
                 "increment"
             )
-        for k, (pair, terms, (p, q)) in enumerate(self._pairs(at.contact_state)):
+        for k, (pair, terms, (p, q)) in enumerate(self.pairs(at.contact_state)):
             starts = partial(outside, self.contact_term, k, moves)
             states = partial(pair.states, terms, p, q)
             found = passed(pair, old, new, states, terms, starts)
@@ -368,7 +187,7 @@ class ContactEquations:
         none = self.system.scales.zero_force
         return any(
             not pair.tied and bool((p * terms.area > none).any())
-            for pair, terms, (p, _) in self._pairs(self.contact_state)
+            for pair, terms, (p, _) in self.pairs(self.contact_state)
         )
 
     def near(self, u: Floats) -> bool:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.terms.contact.active_set import UnilateralConstraints
+from corota.analysis.terms.contact.complementarity import UnilateralConstraints
 from corota.analysis.terms.contact.gaps import ContactState
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN
 from corota.errors import ConvergenceError
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.energies import Energies
     from corota.analysis.equations import System
-    from corota.analysis.terms.contact.active_set import Law
+    from corota.analysis.terms.contact.complementarity import Law
     from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.pair import Pair, Terms
 

@@ -1,4 +1,13 @@
-"""Error of a dynamic increment in the instant of impact."""
+"""When bodies in motion meet: increments that end at the first contact, and the error of an impact.
+
+Time of first contact of separate surfaces, so that a dynamic increment can end there.
+
+A wall does not act on a body in flight, and an increment limited only by its own error may end
+at any depth behind it. The time to contact follows from gap, closing velocity and acceleration of
+the body. At larger distance an increment covers most of the gap, because the estimate improves as
+the
+surfaces approach; the last one ends a ten-thousandth of an edge behind the first contact.
+"""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -8,15 +17,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.pair import COVERED, OPEN
+from corota.analysis.terms.contact.tunneling import UNSEEN, other_side, times_of_crossing
+from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.equations import System
     from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.gaps import ContactState
+    from corota.analysis.terms.contact.pair import Pair, Terms
+    from corota.analysis.terms.inertia import MotionState
 
     Floats = NDArray[np.float64]
-
 
 #: First contact may be found so late, over the tolerance of the step [slave edges].
 FIRST = 1.0
@@ -95,4 +108,166 @@ def _first_contact(contact_term: ContactTerm, contact_state: ContactState, meets
     return late
 
 
-__all__ = ["impact_error"]
+#: Depth behind the first contact at which an increment ends [slave edges].
+BEYOND = 1e-4
+#: Gap from which an increment leaves a remainder [slave edges], and the fraction left.
+WIDE, LEFT = 0.1, 0.05
+#: Largest number of successive increments shortened in this way: surfaces may also pass closely.
+MOST_IN_A_ROW = 8
+
+
+class Approach:
+    """Times to contact of separate surfaces.
+
+    Parameters
+    ----------
+    system : System
+    massless : ndarray of bool, shape (n_dofs,)
+        Displacements without mass; their accelerations are meaningless.
+
+    Attributes
+    ----------
+    meets : bool
+        Whether the last requested increment ends after a first contact.
+    limited : bool
+        Whether it was shortened.
+    """
+
+    def __init__(self, system: System, massless: NDArray[np.bool_]) -> None:
+        self.system = system
+        self.meets = self.limited = False
+        self.in_a_row = 0
+        #: Displacement of the last increment by node and its time; velocities of nodes without
+        #: mass oscillate about it.
+        self.moved, self.dt = np.zeros((0, 3)), 0.0
+        mesh = system.model.mesh
+        opens = system.contact_term.opens
+        part = part_of_nodes(mesh) if opens else np.full(mesh.n_nodes, -1, np.int64)
+        heavy = np.zeros(len(part), bool)
+        heavy[system.node_of_dof[~massless & ~system.is_rotation]] = True
+        #: Body of each node, -1 for none, and the nodes whose mean acceleration is the body's.
+        self.part, self.heavy = part, heavy & (part >= 0)
+        #: Nodes of bodies, bodies of heavy nodes, and how many each body has of these.
+        self.known, self.owner = part >= 0, part[self.heavy]
+        self.count = np.bincount(self.owner, minlength=part.max(initial=-1) + 1)
+
+    def within(self, now: MotionState, dt: float, least: float) -> float:
+        """The increment, or the shorter one that ends at first contact [time]."""
+        self.meets = self.limited = False
+        term: ContactTerm = self.system.contact_term
+        if not term.opens or self.in_a_row >= MOST_IN_A_ROW:
+            return dt
+        x = rates = acceleration = None
+        until = dt
+        for number, pair in enumerate(term.pairs):
+            if pair.tied:
+                continue
+            if x is None or rates is None or acceleration is None:
+                x = term.positions(term.u)
+                acceleration = self._accelerations(now)
+                rates = self._rates(now, acceleration)
+            terms = pair.gaps_at(term, number, x)
+            apart = pair.apart(terms, None if term.at is None else term.at.states[number])
+            if not apart.any():
+                continue
+            seen = apart & (terms.area > COVERED * pair.full)
+            time, meets = _time_to_contact(pair, terms, seen, rates, acceleration)
+            if not seen.all():
+                farther = _time_in_reach(pair, apart & ~seen, x, rates, min(time, until))
+                if farther < time:
+                    time, meets = farther, False
+            if time < until:
+                until, self.meets, self.limited = time, meets, True
+        return max(until, min(least, dt))
+
+    def follow(self, before: Floats, after: Floats, dt: float) -> None:
+        """Record an accepted increment between displacements of shape (n_dofs,)."""
+        if not self.system.contact_term.opens:
+            return
+        self.in_a_row = self.in_a_row + 1 if self.limited else 0
+        self.moved, self.dt = self.system.by_node(after - before), dt
+        self.meets = self.limited = False
+
+    def _accelerations(self, now: MotionState) -> Floats:
+        """Mean acceleration of the body of each node, shape (n_nodes, 3)."""
+        out = self.system.by_node(now.a)
+        if not len(self.owner):
+            return out
+        inner, size = self.part[self.known], np.maximum(self.count, 1)
+        for i in (0, 1):
+            sums = np.bincount(self.owner, out[self.heavy, i], len(self.count))
+            out[self.known, i] = (sums / size)[inner]
+        out[:, 2] = 0.0
+        return out
+
+    def _rates(self, now: MotionState, acceleration: Floats) -> Floats:
+        """Velocity of each node, shape (n_nodes, 3)."""
+        out = self.system.by_node(now.v)
+        if self.dt:
+            mean = self.moved[:, :2] / self.dt + 0.5 * self.dt * acceleration[:, :2]
+            out[self.known, :2] = mean[self.known]
+        return out
+
+
+def _time_to_contact(
+    pair: Pair, terms: Terms, seen: NDArray[np.bool_], rates: Floats, acceleration: Floats
+) -> tuple[float, bool]:
+    """Time to the end of the next increment towards contact, and whether contact begins there."""
+    if not seen.any():
+        return np.inf, False
+    area = np.where(seen, terms.area, 1.0)
+    edge = float(pair.slave.length.mean())
+    gap = terms.gap / area
+    if pair.law is not None:
+        gap = gap + pair.law.start
+
+    def rate(of: Floats) -> Floats:
+        part = (terms.gap_gradient * of.ravel()[terms.variables]).sum(axis=1)
+        return -np.bincount(terms.constraint, part, pair.n) / area
+
+    speed, growth = rate(rates), rate(acceleration)
+    wide = gap > WIDE * edge
+    way = np.where(wide, (1.0 - LEFT) * gap, gap + BEYOND * edge)
+    # Schemes that close gaps at the end of an increment may start with such small gaps.
+    least = pair.noise if pair.start is not None else BEYOND * edge
+    square = speed**2 + 2.0 * growth * way
+    root = speed + np.sqrt(np.maximum(square, 0.0))
+    meets = seen & (gap > least) & (square >= 0.0) & (root > 0.0)
+    if not meets.any():
+        return np.inf, False
+    time = np.where(meets, 2.0 * way / np.where(meets, root, 1.0), np.inf)
+    first = int(np.argmin(time))
+    return float(time[first]), not bool(wide[first])
+
+
+def _time_in_reach(
+    pair: Pair, which: NDArray[np.bool_], x: Floats, rates: Floats, dt: float
+) -> float:
+    """Time after which distant surfaces are near each other, if that is before `dt`."""
+    if not np.isfinite(dt):
+        return np.inf
+    new = x + dt * rates
+    first, last, ends = other_side(pair, x, new)
+    if not len(first):
+        return np.inf
+    nodes = pair.nodes[which]
+    drift = (last - first).reshape(-1, 2)
+    mean = drift.mean(axis=0)
+    spread = np.hypot(*(drift - mean).T).max()
+    move = new[:, :2] - x[:, :2]
+    nodes = nodes[np.hypot(*(move[nodes] - mean).T) + spread > UNSEEN * pair.reach]
+    if not len(nodes):
+        return np.inf
+    times = times_of_crossing(first, last, ends, x, new, nodes, np.zeros(len(nodes)))
+    when = float(times.min())
+    if not np.isfinite(when):
+        return np.inf
+    nodes = nodes[np.isfinite(times)]
+    # Half of the distance, or all up to the reach, within which gaps and closing velocities are
+    # known.
+    way = float(np.hypot(*(move[nodes] - mean).T).max())
+    share: float = max(0.5, 1.0 - 0.25 * pair.reach / way)
+    return share * when * dt
+
+
+__all__ = ["Approach", "impact_error"]

@@ -17,16 +17,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.failure import GiveUp
 from corota.analysis.terms.contact.gaps import Kink
+from corota.analysis.terms.contact.problem import RightHandSides
+from corota.analysis.terms.contact.states import chosen, columns
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.gaps import ContactState
     from corota.analysis.terms.contact.pair import Terms
+    from corota.analysis.terms.contact.problem import ContactProblem
     from corota.analysis.terms.term import StatePoint
 
     Floats = NDArray[np.float64]
@@ -203,4 +208,79 @@ def _kink(
     return Kink(-pressures / size, -moves / size, jump) if size > 0.0 else None
 
 
-__all__ = ["Sides", "both_sides", "found", "near_side"]
+#: Iterations without progress after which a kink is searched.
+WAITED = 3
+#: Kinks that an attempt tries, and corrections in which one may carry a force above its jump.
+MAX_KINKS, MAX_BEYOND = 3, 3
+#: Fractions of the jump between which an equilibrium is searched: beyond, the bodies do not rest
+#: there.
+FEWEST_SHARES, MOST_SHARES = -2.0, 3.0
+#: Remainder of two corrections that cancel each other, relative to the last one.
+TO_AND_FRO = 0.2
+
+
+def keeps_kink(problem: ContactProblem, at: Evaluation) -> bool:
+    """Whether the correction is one at a kink; looks for one where there is no progress."""
+    if problem.kink is not None:
+        problem.beyond += problem.kink.excess > 0.0
+        if problem.beyond <= MAX_BEYOND:
+            return True
+        if problem.inherits:
+            problem.kink, problem.beyond, problem.inherits = None, 0, False
+            return False
+        raise GiveUp("no equilibrium at the kink of the contact surfaces")
+    if (
+        problem.waited < WAITED
+        or problem.kinks >= MAX_KINKS
+        or not _to_and_fro(problem.places)
+        or at.link.couples
+        or problem.contact_term.persistent
+        or not problem.system.nlgeom
+    ):
+        return False
+    sides = Sides(problem.contact_term, at.contact_state.multipliers, at.contact_state.time)
+    _, before, here = problem.places
+    problem.kink = found(sides, here, before)
+    # The candidates of the search may have changed.
+    state, now = at.contact_state, sides.state(here)
+    at.internal = at.internal + state.force - now.force
+    at.contact_state = now
+    problem.kinks += problem.kink is not None
+    return problem.kink is not None
+
+
+def _to_and_fro(places: list[Floats]) -> bool:
+    """Whether the last two corrections cancel each other."""
+    if len(places) < 3:
+        return False
+    first, before, here = places
+    return float(np.abs(here - first).max()) <= TO_AND_FRO * float(np.abs(here - before).max())
+
+
+def along_kink(
+    problem: ContactProblem, at: Evaluation, right_sides: RightHandSides
+) -> tuple[Floats, int] | None:
+    """Newton correction with the force that the kink carries as an unknown."""
+    kink = problem.kink
+    assert kink is not None
+    both = RightHandSides(
+        np.column_stack([right_sides.force[:, 0], kink.jump]),
+        np.column_stack([right_sides.constrained[:, 0], np.zeros(problem.n)]),
+        np.array([1.0, 0.0]),
+    )
+    z, negative = columns(problem, at, both, chosen(problem, at.contact_state))
+    first, second = kink.normal @ z[: problem.n]
+    if second == 0.0:
+        problem.kink = None
+        return None
+    change = (kink.distance - float(first)) / float(second)
+    if not FEWEST_SHARES <= kink.share + change <= MOST_SHARES:
+        problem.kink = None
+        return None
+    dz: Floats = z[:, 0] + change * z[:, 1]
+    kink.base = (problem.places[-1], kink.share, dz[: problem.n].copy(), change)
+    problem.stage = "equilibrium at a kink of the contact surfaces"
+    return problem.moved(dz), negative
+
+
+__all__ = ["Sides", "along_kink", "both_sides", "found", "keeps_kink", "near_side"]

@@ -56,11 +56,11 @@ def linearized_contact(
         states = contact_term.at.states
     elif states is None:
         states = [
-            pair.states(terms, p, q) for pair, terms, (p, q) in contact._pairs(at.contact_state)
+            pair.states(terms, p, q) for pair, terms, (p, q) in contact.pairs(at.contact_state)
         ]
     states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
     contact.slip_directions = {p.first: np.ones(p.n) for p in contact_term.pairs}
-    coupling = contact._coupling(at.contact_state, states)[0]
+    coupling = contact.coupling(at.contact_state, states)[0]
     own, hard = np.zeros(contact_term.n), np.zeros(contact_term.n, bool)
     for pair in contact_term.pairs:
         part = pair.full / pair.stiffness

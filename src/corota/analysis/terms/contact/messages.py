@@ -1,20 +1,28 @@
-"""What a failed increment hung on, and what gives way at a limit, in the words of the model."""
+"""Messages on contact: meshes before the run, failed increments, what gives way, missed peaks."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.corners import sunk_corner
+from corota.analysis.terms.contact.surface import blunt_turns, sharp_corners
+from corota.model.contact import ContactPair, RigidCurve
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.contact.problem import ContactProblem
+    from corota.results.results import Results
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
 
 #: How often a state must have changed to be named.
 OFTEN = 2
@@ -115,4 +123,144 @@ def _corners(contact_term: ContactTerm) -> NDArray[np.bool_]:
     return found
 
 
-__all__ = ["explanation", "gives_way"]
+#: Slave edges that a round corner should measure along its radius, and the least turn of one.
+EDGES, TURN = 2.0, math.radians(20.0)
+
+
+def fillet_note(pair: Pair) -> str:
+    """A remark on round corners of a rigid curve that are too small for the slave edges, or ''."""
+    curve = getattr(pair.item, "master", None)
+    if not isinstance(curve, RigidCurve) or pair.beside is None:
+        return ""
+    rows = curve.segments
+    # Clockwise arcs have the rigid body inside: the corners that slave edges pass around.
+    corners = rows[rows[:, 6] < -TURN]
+    if not len(corners):
+        return ""
+    radius = float(np.hypot(*(corners[:, :2] - corners[:, 4:6]).T).min())
+    # The mean by length: short edges at a nose do not represent the sliding face.
+    edge = float((pair.slave.length**2).sum() / pair.slave.length.sum())
+    if radius >= EDGES * edge:
+        return ""
+    return (
+        f"contact pair {pair.item.name!r}: the smallest round corner of the rigid curve has the "
+        f"radius {radius:.4g}, {radius / edge:.2g} slave edges (mean {edge:.4g}); the force "
+        "will be jagged while nodes pass it one by one. Use method='node_to_segment' (TYPE=NODE "
+        "TO SURFACE), which measures such rounds against edges; or use slave edges of at most "
+        f"{radius / EDGES:.3g} where they meet it, or a larger radius"
+    )
+
+
+def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
+    """A remark on masters that press with corners but not as corners, or ''.
+
+    Sharp corners under a pressure law, and round boundaries with too coarse edges.
+    """
+    if pair.master is None or pair.tied or pair.slave.pointwise:
+        return ""
+    sharp = sharp_corners(points, pair.master.nodes[:, :2]) if pair.law is not None else []
+    if sharp:
+        named = ", ".join(str(labels[k]) for k in sharp[:3]) + ", ..." * (len(sharp) > 3)
+        return (
+            f"contact pair {pair.item.name!r}: the master has sharp corners (node {named}). A "
+            "pressure law acts on areas, so a corner that presses alone sinks in between slave "
+            "nodes and wedges: where the other body meets a corner, make this surface the slave, "
+            "or use hard contact"
+        )
+    if getattr(pair.item, "smooth", True):
+        return ""
+    turns = blunt_turns(points, pair.master)
+    node, turn = max(turns.items(), key=lambda item: item[1], default=(-1, 0.0))
+    if turn <= TURN:
+        return ""
+    return (
+        f"contact pair {pair.item.name!r}: the master turns by {math.degrees(turn):.0f} degrees "
+        f"from edge to edge at node {labels[node]}; the force will jump when contact passes such "
+        "nodes. Where the boundary should be round, treat it as a curve (smooth=True, SMOOTH of "
+        "*CONTACT PAIR) or refine its edges"
+    )
+
+
+#: Depth from which a corner is reported, and beyond which it is on the far side of a body [edges].
+NAMED, FAR = 0.1, 2.0
+
+
+def sunk_corner(system: System) -> str:
+    """Message on the deepest corner of a master inside a slave surface, or ''.
+
+    A pressure law acts on areas, so that a corner has no constraint of its own: it can penetrate
+    between two slave nodes until one of them is in contact with the side of the corner and jams.
+    """
+    contact_term = system.contact_term
+    x = contact_term.positions(contact_term.u)[:, :2]
+    worst, said = NAMED, ""
+    for pair in contact_term.pairs:
+        if pair.law is None or pair.master is None or not isinstance(pair.item, ContactPair):
+            continue
+        for corner in sharp_corners(x, pair.master.nodes[:, :2]):
+            depth, ends = _depth(x, pair, corner)
+            if worst < depth < FAR:
+                label = contact_term.system.model.mesh.node_labels
+                worst = depth
+                said = (
+                    f"; the sharp corner of the master at node {label[corner]} lies {depth:.2g} "
+                    f"slave edges inside the slave surface of {pair.name!r}, between nodes "
+                    f"{label[ends[0]]} and {label[ends[1]]}: a pressure law acts on areas, so "
+                    "that it goes in until they wedge. Exchange slave and master, refine the "
+                    "slave where the corner meets it, round the corner, or use hard contact"
+                )
+    return said
+
+
+def _depth(x: Floats, pair: Pair, corner: int) -> tuple[float, tuple[int, int]]:
+    """Depth behind the nearest slave edge [its length], and the edge; 0 beyond its ends."""
+    edges = pair.slave.nodes[:, :2]
+    edges = edges[(edges != corner).all(axis=1)]
+    if not len(edges):
+        return 0.0, (-1, -1)
+    d, r = x[edges[:, 1]] - x[edges[:, 0]], x[corner] - x[edges[:, 0]]
+    square = (d * d).sum(axis=1)
+    along = (r * d).sum(axis=1) / square
+    off = r - np.clip(along, 0.0, 1.0)[:, None] * d
+    k = int(np.argmin((off * off).sum(axis=1)))
+    a, b = edges[k].tolist()
+    if not 0.0 < along[k] < 1.0:
+        return 0.0, (a, b)
+    return float((d[k, 0] * r[k, 1] - d[k, 1] * r[k, 0]) / square[k]), (a, b)
+
+
+#: Change of a force beside its largest value, relative to it, from which an increment may have
+#: missed the peak.
+STEEP = 0.05
+
+
+def missed_peaks(results: Results, pairs: list[ContactPair], static: set[int]) -> list[str]:
+    """Notes on largest forces of pairs beside which the force changes much in one increment.
+
+    Parameters
+    ----------
+    results : Results
+    pairs : list of ContactPair
+    static : set of int
+        Numbers of the static steps; in motion the scheme bounds the error of an increment.
+    """
+    notes = []
+    frames = [f for f in results.frames if f.step in static]
+    for pair in pairs:
+        along = [[f.scalars.get(f"{pair.name}: force {c}", 0.0) for c in "xy"] for f in frames]
+        force = np.hypot(*np.reshape(along, (-1, 2)).T)
+        i = int(np.argmax(force)) if len(force) else 0
+        if not 0 < i < len(frames) - 1 or frames[i - 1].step != frames[i + 1].step:
+            continue
+        before, most, after = force[i - 1 : i + 2]
+        if most - min(before, after) > STEEP * most:
+            notes.append(
+                f"contact pair {pair.name!r}: the largest force, {most:.4g}, at step time "
+                f"{frames[i].step_time:.4g} of step {frames[i].step}, stands between {before:.4g} "
+                f"and {after:.4g} of the increments beside it, between which it may be larger: a "
+                "smaller largest_increment resolves the peak"
+            )
+    return notes
+
+
+__all__ = ["corner_note", "explanation", "fillet_note", "gives_way", "missed_peaks", "sunk_corner"]

@@ -2,6 +2,15 @@
 
 Lengths are those of displacements alone. Every attempt begins with the states of the last
 commit; a point's own states give the direction of the path there.
+
+Where contact changes its states along a path, to first order: the predictor passes kinks.
+
+From an equilibrium the direction of the path holds until the first gap closes, the first pressure
+vanishes or the first traction reaches the friction bound. From there the direction is that of
+the new states, oriented so that the change continues.
+
+Source: the pivoting of parametric linear complementarity, R. W. Cottle, J.-S. Pang and R. E. Stone,
+*The Linear Complementarity Problem* (2009), ch. 4.5.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -11,22 +20,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.path_system import NOT_CONSERVATIVE, SmoothPath
+from corota.analysis.path_system import NOT_CONSERVATIVE, Metric, Point, SmoothPath, Tangent
 from corota.analysis.terms.contact.equations import MAX_EXTRA_CONTACT_ITERATIONS, ContactEquations
-from corota.analysis.terms.contact.event_predictor import predict_through_events
-from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
+from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
 from corota.analysis.terms.contact.problem import RightHandSides
-from corota.errors import ModelError
+from corota.analysis.terms.contact.states import chosen, columns
+from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.path_system import Metric, Point, Tangent
 
     Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
+    Event = tuple[float, int, int, int]
 
 #: Message for slipping friction, where stability is unknown.
 SLIPS = (
@@ -51,6 +60,8 @@ class ContactPathEquations(ContactEquations):
     """
 
     more_iterations = MAX_EXTRA_CONTACT_ITERATIONS
+    #: By the control of the path.
+    bounded = True
 
     def __init__(self, system: System, notes: list[str]) -> None:
         super().__init__(system)
@@ -70,8 +81,9 @@ class ContactPathEquations(ContactEquations):
         self.counted = np.concatenate([system.counted, np.zeros(contact_term.n, bool)])
         #: States of the direction at the committed state, with which an attempt begins.
         self._base: States | None = None
-        #: Whether nothing was tried since, and whether an attempt may bring bodies into contact.
-        self._fresh, self._loose = True, False
+        #: Whether nothing was tried since. An attempt brings bodies into contact at the start
+        #: only: on a path, a singular stiffness is a critical point.
+        self._fresh, self.holds = True, False
 
     @property
     def not_conservative(self) -> str:
@@ -82,7 +94,7 @@ class ContactPathEquations(ContactEquations):
         """Begin an attempt with the states of the last commit, or of another evaluation."""
         self.contact_term.revert()
         self.forget()
-        self._fresh, self._loose = False, loose
+        self._fresh, self.holds = False, loose
         first = (
             self._base if not (like and like.contact_state.settled) else like.contact_state.settled
         )
@@ -111,7 +123,7 @@ class ContactPathEquations(ContactEquations):
             np.stack([np.zeros(n), move[:n]], axis=1),
             np.array([1.0, 0.0]),
         )
-        x, _ = self._columns(at, right_sides, self._choose(at.contact_state))
+        x, _ = columns(self, at, right_sides, chosen(self, at.contact_state))
         return x[:, 0], x[:, 1]
 
     def rate(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, int]:
@@ -133,9 +145,9 @@ class ContactPathEquations(ContactEquations):
         slip_directions: dict[tuple[int, int], float] | None = None,
     ) -> tuple[Floats, int]:
         """The same with given states, and senses of slip of some (pair, constraint)."""
-        self._loose = False
+        self.holds = False
         right_sides = RightHandSides(force[: self.n, None], move[: self.n, None], np.zeros(1))
-        x, negative = self._columns(at, right_sides, states, slip_directions)
+        x, negative = columns(self, at, right_sides, states, slip_directions)
         return x[:, 0], negative
 
     def around(
@@ -198,7 +210,7 @@ class ContactPathEquations(ContactEquations):
             before: Any = corrected or [None] * len(self.contact_term.pairs)
             state.settled = [
                 pair.states(terms, p, q, last)
-                for (pair, terms, (p, q)), last in zip(self._pairs(state), before, strict=True)
+                for (pair, terms, (p, q)), last in zip(self.pairs(state), before, strict=True)
             ]
         return state.settled
 
@@ -214,29 +226,195 @@ class ContactPathEquations(ContactEquations):
             out.append((gap, slip))
         return out
 
-    def _held(
-        self, at: Evaluation, states: States, right_sides: RightHandSides
-    ) -> tuple[Floats, Floats, int, States]:
-        """Correction with unchanged states: on a path, a singular stiffness is a critical point.
-
-        Unconstrained bodies are brought into contact only at the start of a path.
-        """
-        if self._loose:
-            return super()._held(at, states, right_sides)
-        return *self._solve(at, states, right_sides), states
-
-    # A control bounds the correction that is made: none of its parts is one by itself.
-
-    def _far(self, du: Floats, right_sides: RightHandSides) -> bool:
-        return False
-
-    def _let_slip(self, at: Any, states: States, right_sides: RightHandSides, found: Any) -> Any:
-        return *found, states
-
 
 def path_system(system: System, notes: list[str]) -> Any:
     """The system for path following; `notes` collects remarks for the user."""
     return ContactPathEquations(system, notes) if system.contact_term.pairs else SmoothPath(system)
 
 
-__all__ = ["SLIPS", "ContactPathEquations", "path_system"]
+#: Most changes in one increment, and share of it within which they happen at once.
+MOST_EVENTS, AT_ONCE = 12, 1e-9
+
+
+def predict_through_events(
+    path: ContactPathEquations,
+    base: Point,
+    tangent: Tangent,
+    metric: Metric,
+    size: float,
+    period: float,
+) -> tuple[Point, Tangent, States] | None:
+    """Predict a point behind changes of states; None where there is none on the way.
+
+    Parameters
+    ----------
+    base : Point
+        Committed.
+    tangent : Tangent
+        Direction there.
+    size : float
+        Distance to go, by the metric.
+
+    Returns
+    -------
+    point : Point
+    tangent : Tangent
+        Direction of the last part of the way.
+    states : list of ndarray
+        Predicted at the point.
+    """
+    committed = path.contact_term.at
+    if committed is None or not committed.states:
+        return None
+    way = EventPath(path, base, tangent, [s.copy() for s in committed.states])
+    left, met = size, None
+    for _ in range(MOST_EVENTS):
+        event = way.first(None if met is None else met[0])
+        if event is None or event[0] >= left:
+            break
+        distance, k, i, state = event
+        way.go(distance)
+        left -= distance
+        if met is None or distance > AT_ONCE * size:
+            met = ((k, i), int(way.states[k][i]), state)
+        if not way.change(k, i, state, period) or not way.turn(metric, *met):
+            return None
+    if met is None:
+        return None
+    way.go(left)
+    return Point(way.z, way.factor, None), way.tangent, way.states
+
+
+class EventPath:
+    """A way along directions of the linearized path.
+
+    Parameters
+    ----------
+    path : ContactPathEquations
+    base : Point
+        Committed.
+    tangent : Tangent
+        Direction there.
+    states : list of ndarray
+        There; changed in place.
+    """
+
+    def __init__(
+        self, path: ContactPathEquations, base: Point, tangent: Tangent, states: States
+    ) -> None:
+        self.path, self.base, self.tangent, self.states = path, base, tangent, states
+        self.at: Evaluation = base.at
+        self.gaps = [terms.gap for terms in self.at.contact_state.terms]
+        self.z, self.factor = base.u, base.factor
+        self.seen = {(k, i, int(s[i])) for k, s in enumerate(states) for i in range(len(s))}
+        self.slip_directions: dict[tuple[int, int], float] = {}
+        self._changed = False
+
+    def go(self, distance: float) -> None:
+        """Go on along the direction."""
+        rates = self.path.gap_rates(self.at, self.tangent.u)
+        self.gaps = [gap + distance * rate for gap, (rate, _) in zip(self.gaps, rates, strict=True)]
+        self.z = self.z + distance * self.tangent.u
+        self.factor += distance * self.tangent.factor
+
+    def change(self, k: int, i: int, state: int, period: float) -> bool:
+        """Give a constraint another state; False where it had it before."""
+        path = self.path
+        pair = path.contact_term.pairs[k]
+        slides = path.gap_rates(self.at, self.tangent.u)[k][1][i]
+        if pair.friction and self.states[k][i] == OPEN and slides != 0.0:
+            # A constraint that closes while sliding continues to slip, if possible.
+            state, self.slip_directions[k, i] = SLIPPING, -float(np.sign(slides))
+        elif state == SLIPPING:
+            q = path.contact_term.parts(self.z[path.n :])[k][1][i]
+            dq = path.contact_term.parts(self.tangent.u[path.n :])[k][1][i]
+            self.slip_directions[k, i] = 1.0 if (q or dq) > 0.0 else -1.0
+        if (k, i, state) in self.seen:
+            return False
+        if not self._changed:
+            # The core's derivatives are those of what was evaluated last.
+            path.restart()
+            self.at = path.evaluate(self.base.u.copy(), self.base.factor * period)
+            self._changed = True
+        self.seen.add((k, i, state))
+        self.states[k][i] = state
+        return True
+
+    def turn(self, metric: Metric, where: tuple[int, int], before: int, state: int) -> bool:
+        """Take the direction of the states, oriented so that one change continues."""
+        path = self.path
+        try:
+            x, negative = path.rate_with(
+                self.at, self.states, *path.load_rate(self.base.u), self.slip_directions
+            )
+        except SingularError:
+            return False
+        length, old = metric.size(x, 1.0), self.tangent
+        self.tangent = Tangent(x / length, 1.0 / length, negative)
+        going = self._going(where, before, state)
+        if going < 0.0:
+            self.tangent = self.tangent.reversed()
+        # Friction lets the path change direction; a reversal would be the opposite loading.
+        new, gaps = self.tangent, OPEN in (before, state)
+        return going != 0.0 and (gaps or metric.dot(new.u, new.factor, old.u, old.factor) > 0.0)
+
+    def _going(self, where: tuple[int, int], before: int, state: int) -> float:
+        """Positive where the direction leads into a new state."""
+        (k, i), path = where, self.path
+        dp, dq = path.contact_term.parts(self.tangent.u[path.n :])[k]
+        dgap, dslip = path.gap_rates(self.at, self.tangent.u)[k]
+        if state == OPEN:
+            return float(dgap[i])
+        if before == OPEN:
+            return float(dp[i])
+        q = path.contact_term.parts(self.z[path.n :])[k][1][i]
+        slip_direction = self.slip_directions.get((k, i), 1.0 if q > 0.0 else -1.0)
+        if state == SLIPPING:
+            return float(-slip_direction * dslip[i])
+        # A constraint that sticks again unloads.
+        return float(path.contact_term.pairs[k].friction * dp[i] - slip_direction * dq[i])
+
+    def first(self, latest: tuple[int, int] | None) -> Event | None:
+        """The next change along the direction; of several at once, that of the latest first."""
+        best: Event | None = None
+        path, contact_term = self.path, self.path.contact_term
+        tractions, rates = (
+            contact_term.parts(self.z[path.n :]),
+            contact_term.parts(self.tangent.u[path.n :]),
+        )
+        moves = path.gap_rates(self.at, self.tangent.u)
+        for k, pair in enumerate(contact_term.pairs):
+            if pair.tied or pair.law is not None or not pair.n:
+                continue
+            (p, q), (dp, dq), (dgap, dslip) = tractions[k], rates[k], moves[k]
+            state, seen = self.states[k], self.at.contact_state.terms[k].area > COVERED * pair.full
+            found = [
+                (_reach(self.gaps[k], -dgap, seen & (state == OPEN)), CLOSED),
+                (_reach(p, -dp, state != OPEN), OPEN),
+            ]
+            if pair.friction:
+                mu, sticks = pair.friction, state == CLOSED
+                for sign in (1.0, -1.0):
+                    margin = _reach(mu * p - sign * q, sign * dq - mu * dp, sticks)
+                    found.append((margin, SLIPPING))
+                slip_direction = np.sign(q)
+                for (which, i), other in self.slip_directions.items():
+                    if which == k:
+                        slip_direction[i] = other
+                found.append((_reach(0.0 * q, dslip * slip_direction, state == SLIPPING), CLOSED))
+            for ways, new in found:
+                i = int(np.argmin(ways))
+                if latest is not None and latest[0] == k and ways[latest[1]] <= ways[i]:
+                    i = latest[1]
+                if ways[i] < (np.inf if best is None else best[0]):
+                    best = (float(ways[i]), k, i, new)
+        return best
+
+
+def _reach(margin: Floats, rate: Floats, which: NDArray[np.bool_]) -> Floats:
+    """Distances after which quantities that decrease at a rate reach zero."""
+    shrinks = which & (rate > 0.0)
+    return np.where(shrinks, np.maximum(margin, 0.0) / np.where(shrinks, rate, 1.0), np.inf)
+
+
+__all__ = ["SLIPS", "ContactPathEquations", "path_system", "predict_through_events"]

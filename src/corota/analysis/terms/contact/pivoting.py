@@ -77,7 +77,7 @@ class Pivoting:
         self, problem: ContactProblem, at: Evaluation, right_sides: RightHandSides
     ) -> None:
         self.problem, self.at, self.right_sides = problem, at, right_sides
-        self.pairs = list(problem._pairs(at.contact_state))
+        self.pairs = list(problem.pairs(at.contact_state))
 
     def solve(self, bases: list[States]) -> Found | None:
         """Correction of dofs and multipliers, its states and senses; None where none is found.
@@ -392,7 +392,7 @@ class Pivoting:
 
 def pivoted(problem: ContactProblem, at: Evaluation, right_sides: RightHandSides) -> Found | None:
     """A correction with states from the whole linearized problem; None if there is none."""
-    pairs = list(problem._pairs(at.contact_state))
+    pairs = list(problem.pairs(at.contact_state))
     first = [pair.states(terms, p, q) for pair, terms, (p, q) in pairs]
     starts = [first] if problem.last is None else [problem.last, first]
     # With all closed constraints sticking, bodies held by friction are constrained and the matrix
@@ -425,7 +425,7 @@ def responses(
     problem.slip_directions = {
         p.first: s for p, s in zip(problem.contact_term.pairs, slip_directions, strict=True)
     }
-    coupling, own, _ = problem._coupling(at.contact_state, states)
+    coupling, own, _ = problem.coupling(at.contact_state, states)
     columns = [right_sides.force[:, 0] + system.at_nodes(coupling.force)]
     columns += [system.at_nodes(f) for f in force.T]
     constrained = np.zeros((problem.n, len(columns)))
@@ -444,7 +444,7 @@ def rates_of(problem: ContactProblem, at: Evaluation, du: Floats, only: int | No
     moved = np.stack([problem.system.in_space(u) for u in du.reshape(problem.n, -1).T], axis=1)
     moved = np.concatenate([moved, np.zeros((1, moved.shape[1]))])
     out = []
-    for k, (pair, terms, _) in enumerate(problem._pairs(at.contact_state)):
+    for k, (pair, terms, _) in enumerate(problem.pairs(at.contact_state)):
         if only is not None and k != only:
             continue
         where, parts = problem.contact_term.dofs(terms.variables), []

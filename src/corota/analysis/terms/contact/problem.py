@@ -1,12 +1,16 @@
-"""An increment with contact: right-hand sides, interface of the problem."""
+"""An attempt at an increment with contact: its data and its linearized equations."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from corota.analysis.linear.saddle_point import SaddlePointSystem
+from corota.analysis.rule import REST, Rule
+from corota.analysis.terms.contact.linearization import linearized
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -14,13 +18,15 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.coupling import Coupling
-    from corota.analysis.linear.saddle_point import SaddlePointSystem
     from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.gaps import ContactState, Kink
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
+
+#: Corrections after which partly covered nodes keep their owners.
+CORRECTIONS_BEFORE_FREEZE = 4
 
 
 @dataclass
@@ -40,8 +46,14 @@ class RightHandSides:
     own: Floats
 
 
-class ContactProblem(Protocol):
-    """Interface of the equations of an increment for the choice of states and for messages.
+class ContactProblem:
+    """One attempt at an increment with contact: its data, and its linearized equations.
+
+    Parameters
+    ----------
+    system : System
+    rule : Rule
+        What the increment makes of its unknowns.
 
     Attributes
     ----------
@@ -73,64 +85,120 @@ class ContactProblem(Protocol):
         How the last correction was found.
     """
 
-    n: int
-    system: System
-    contact_term: ContactTerm
-    last: States | None
-    seen: dict[bytes, int]
-    slip_directions: dict[int, Floats]
-    flips: list[Ints]
-    single: int
-    sliding: int
-    pivoted: int
-    corrections: int
-    waited: int
-    cautious: bool
-    pivoting: bool
-    loose: str
-    kink: Kink | None
-    kinks: int
-    beyond: int
-    inherits: bool
-    places: list[Floats]
-    stage: str
+    #: Whether corrections are bounded by something else: none is too long, or slips at once.
+    bounded = False
+    #: Whether bodies that are not constrained are brought to a hold.
+    holds = True
+
+    def __init__(self, system: System, rule: Rule = REST) -> None:
+        self.system, self.rule = system, rule
+        self.evaluate = system.evaluate
+        self.contact_term: ContactTerm = system.contact_term
+        self.n = system.n_dofs
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin an attempt at the increment."""
+        # Closed constraints stay closed while their pressure does.
+        self.last: States | None = None
+        if self.contact_term.at is not None and self.contact_term.at.states:
+            self.last = [s.copy() for s in self.contact_term.at.states]
+        self.seen: dict[bytes, int] = {}
+        self.cautious = False
+        self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.contact_term.pairs]
+        self.single = self.sliding = self.corrections = self.pivoted = 0
+        self.pivoting = False  # whether states come from the whole linearized problem
+        self.least, self.waited = np.inf, 0
+        self.stage = ""  # how the last correction was found
+        self.relaxing = False  # whether the bodies may move to another equilibrium
+        #: Previous position in relaxation, for the tunneling check.
+        self.since: Floats | None = None
+        self.contact_term.springs = None
+        #: Kink of the contact surfaces at which the bodies may rest, and how often one
+        #: was tried.
+        self.kink: Kink | None = None
+        self.kinks = self.beyond = 0
+        #: Whether the kink is that of the committed state, which may lie behind by now.
+        self.inherits = False
+        self.places: list[Floats] = []  # displacements of the last three evaluations
+        self.first_move = 0.0  # of the first correction [length]
+        self.loose = ""  # bodies that were unconstrained until contact was closed
+        self.slip_directions: dict[
+            int, Floats
+        ] = {}  # of slipping tractions, by the pair's first multiplier
+
+    def go_on(self) -> None:
+        """Begin again at the equilibrium that was found, with its states."""
+        last, kink, first = self.last, self.kink, self.first_move
+        self.forget()
+        self.last, self.kink, self.first_move = last, kink, first
 
     @property
-    def border(self) -> SaddlePointSystem:
-        """Linear algebra with the multipliers."""
-        ...
+    def kink(self) -> Kink | None:
+        """Kink of the contact surfaces at which the bodies may rest."""
+        return self.contact_term.trial_kink
+
+    @kink.setter
+    def kink(self, kink: Kink | None) -> None:
+        self.contact_term.trial_kink = kink
 
     def complementarity(self, at: Evaluation) -> tuple[float, int, int]:
         """Largest contact residual as a force; its pair and constraint."""
-        ...
+        worst = (0.0, 0, 0)
+        for k, (pair, terms, (p, q)) in enumerate(self.pairs(at.contact_state)):
+            if pair.n:
+                complementarity = pair.violation(terms, p, q)
+                i = int(np.argmax(complementarity))
+                if complementarity[i] > worst[0]:
+                    worst = (float(complementarity[i]), k, i)
+        return worst
 
-    def _pairs(self, contact_state: ContactState) -> Any: ...
+    # -- one linearization ---------------------------------------------------------------
 
-    def _moved(self, z: Floats) -> Floats: ...
+    def moved(self, z: Floats) -> Floats:
+        """A correction, whose first size is kept."""
+        if not self.first_move:
+            self.first_move = float(np.abs(z[: self.n][~self.system.is_rotation]).max())
+        return z
 
-    def _choose(self, contact_state: ContactState) -> States: ...
+    def freeze(self) -> None:
+        self.corrections += 1
+        for pair in self.contact_term.pairs:
+            pair.frozen = self.corrections >= CORRECTIONS_BEFORE_FREEZE
 
-    def _coupling(
-        self, contact_state: ContactState, states: States
-    ) -> tuple[Coupling, Floats, int]: ...
-
-    def _solve(
+    def solve(
         self, at: Evaluation, states: States, right_sides: RightHandSides
-    ) -> tuple[Floats, Floats, int]: ...
+    ) -> tuple[Floats, Floats, int]:
+        coupling, own, expected = self.coupling(at.contact_state, states)
+        force = right_sides.force + self.system.at_nodes(coupling.force)[:, None] * right_sides.own
+        rows = own[:, None] * right_sides.own
+        release = -at.contact_state.multipliers[:, None] * right_sides.own
+        du, dp, negative = self.border.solve(
+            at, coupling, force, rows, release, right_sides.constrained
+        )
+        return du, dp, negative - expected if negative >= 0 else -1
 
-    def _columns(
-        self, at: Evaluation, right_sides: RightHandSides, states: States
-    ) -> tuple[Floats, int]: ...
+    @property
+    def border(self) -> SaddlePointSystem:
+        """Linear algebra, kept with the system."""
+        border = self.contact_term.border
+        if border is None:
+            ties = sum(pair.width for pair in self.contact_term.pairs if pair.tied)
+            border = SaddlePointSystem(self.system, self.contact_term.n, ties)
+            self.contact_term.border = border
+        return border
 
-    def _far(self, du: Floats, right_sides: RightHandSides) -> bool: ...
+    def pairs(self, contact_state: ContactState) -> Any:
+        return zip(
+            self.contact_term.pairs,
+            contact_state.terms,
+            self.contact_term.parts(contact_state.multipliers),
+            strict=True,
+        )
 
-    def _let_slip(
-        self,
-        at: Evaluation,
-        states: States,
-        right_sides: RightHandSides,
-        found: tuple[Floats, Floats, int],
-    ) -> tuple[Floats, Floats, int, States]: ...
+    def coupling(self, contact_state: ContactState, states: States) -> tuple[Coupling, Floats, int]:
+        """The border for states, its right-hand side, and its negative pivots."""
+        return linearized(self.contact_term, contact_state, states, self.slip_directions)
 
 
 __all__ = ["ContactProblem", "RightHandSides"]

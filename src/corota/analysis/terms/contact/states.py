@@ -1,4 +1,4 @@
-"""Corrections whose contact states constrain the bodies."""
+"""Contact states of a correction: chosen one by one until they cycle, and such that bodies hold."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -7,22 +7,118 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
+from corota.analysis.failure import GiveUp
+from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from corota.analysis.evaluation import Evaluation
+    from corota.analysis.terms.contact.gaps import ContactState
     from corota.analysis.terms.contact.problem import ContactProblem, RightHandSides
 
-    Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
+    Floats = NDArray[np.float64]
+
+#: Repetitions of a set of states before single changes are made.
+MAX_STATE_REPEATS = 2
+#: Repetitions before the increment is given up.
+MAX_REPEATS_BEFORE_CUTBACK = 7
+#: Relative difference of contact residuals that counts as zero.
+RELATIVE_DIFFERENCE = 1e-6
+
+
+def chosen(problem: ContactProblem, contact_state: ContactState) -> States:
+    """States for the next correction; single changes once a set comes back."""
+    before: Sequence[NDArray[np.int8] | None] = problem.last or [None] * len(
+        problem.contact_term.pairs
+    )
+    wanted = [
+        pair.states(terms, p, q, last)
+        for (pair, terms, (p, q)), last in zip(problem.pairs(contact_state), before, strict=True)
+    ]
+    if problem.last is not None:
+        changed = [a != b for a, b in zip(wanted, problem.last, strict=True)]
+        for flips, new in zip(problem.flips, changed, strict=True):
+            flips += new
+        if any(c.any() for c in changed):
+            key = b"".join(s.tobytes() for s in wanted)
+            problem.seen[key] = problem.seen.get(key, 0) + 1
+            if problem.seen[key] > MAX_REPEATS_BEFORE_CUTBACK:
+                raise GiveUp(
+                    "the contact states cycle: the same nodes open, stick and slip as in "
+                    f"{problem.seen[key] - 1} earlier iterations"
+                )
+            problem.cautious = problem.cautious or problem.seen[key] > MAX_STATE_REPEATS
+            problem.pivoting = problem.pivoting or problem.cautious
+            if problem.cautious:
+                wanted = _one_change(problem, contact_state, wanted, changed)
+    problem.last = wanted
+    return wanted
+
+
+def _one_change(
+    problem: ContactProblem,
+    contact_state: ContactState,
+    wanted: States,
+    changed: list[NDArray[np.bool_]],
+) -> States:
+    """Only the change with the largest contact residual, and all with negligible ones."""
+    assert problem.last is not None
+    problem.single += 1
+    best, where = -1.0, (0, 0)
+    for k, (pair, terms, (p, q)) in enumerate(problem.pairs(contact_state)):
+        complementarity = np.where(changed[k], pair.violation(terms, p, q), -1.0)
+        # Of equals, as in symmetric models, the first: rounding must not choose.
+        if pair.n and complementarity.max() > (1.0 + RELATIVE_DIFFERENCE) * best:
+            first = int(
+                np.argmax(complementarity >= (1.0 - RELATIVE_DIFFERENCE) * complementarity.max())
+            )
+            best, where = float(complementarity[first]), (k, first)
+    out = [s.copy() for s in problem.last]
+    out[where[0]][where[1]] = wanted[where[0]][where[1]]
+    # Constraints without an opposite surface cannot be closed.
+    for state, pair, terms in zip(
+        out, problem.contact_term.pairs, contact_state.terms, strict=True
+    ):
+        state[terms.area <= COVERED * pair.full] = OPEN
+    return out
+
 
 #: Fraction of the friction bound from which a correction is repeated with slip, and how often.
 FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
 #: Relative difference of two gaps that is rounding.
 EQUAL = 1e-6
+
+
+def columns(
+    problem: ContactProblem,
+    at: Evaluation,
+    right_sides: RightHandSides,
+    states: States,
+    slip_directions: dict[tuple[int, int], float] | None = None,
+) -> tuple[Floats, int]:
+    """Solutions of one linearization, shape (n_dofs + n_multipliers, k)."""
+    problem.freeze()
+    problem.slip_directions = {
+        pair.first: pair.slip_direction(terms, q)
+        for pair, terms, (p, q) in problem.pairs(at.contact_state)
+    }
+    for (k, i), slip_direction in (slip_directions or {}).items():
+        problem.slip_directions[problem.contact_term.pairs[k].first][i] = slip_direction
+    du, dp, negative, states = held(problem, at, states, right_sides)
+    for (pair, terms, (p, q)), state in zip(problem.pairs(at.contact_state), states, strict=True):
+        if pair.two:
+            # Slipping tractions follow the pressure; they are no unknowns of the solution.
+            ratio = pair.rows(terms, state, p, q, problem.slip_directions[pair.first])[4]
+            now = np.outer(p, right_sides.own) + dp[pair.first : pair.first + pair.n]
+            new = ratio[:, None] * now - np.outer(q, right_sides.own)
+            slips = state != CLOSED
+            dp[pair.first + pair.n : pair.first + pair.width][slips] = new[slips]
+    return np.concatenate([du, dp]), negative
 
 
 def held(
@@ -32,6 +128,8 @@ def held(
 
     Where all nodes in contact with a body slip at once, it is unconstrained: some must stick.
     """
+    if not problem.holds:
+        return *problem.solve(at, states, right_sides), states
     slipping = any((s == SLIPPING).any() for s in states)
     tries, stuck = [states], states
     if slipping:
@@ -40,15 +138,15 @@ def held(
     reason: SingularError | None = None
     for tried in tries:
         try:
-            du, dp, negative = problem._solve(at, tried, right_sides)
+            du, dp, negative = problem.solve(at, tried, right_sides)
         except SingularError as error:
             reason = error
             problem.sliding += slipping
             continue
-        if tried is not stuck and slipping and problem._far(du, right_sides):
+        if tried is not stuck and slipping and far(problem, du, right_sides):
             problem.sliding += 1
             continue
-        du, dp, negative, tried = problem._let_slip(at, tried, right_sides, (du, dp, negative))
+        du, dp, negative, tried = let_slip(problem, at, tried, right_sides, (du, dp, negative))
         problem.last = tried
         return du, dp, negative, tried
     assert reason is not None
@@ -58,7 +156,7 @@ def held(
 def _least_stick(problem: ContactProblem, at: Evaluation, states: States) -> States:
     """States with the half that exceeds the friction least sticking again."""
     out = []
-    for s, (pair, terms, (p, q)) in zip(states, problem._pairs(at.contact_state), strict=True):
+    for s, (pair, terms, (p, q)) in zip(states, problem.pairs(at.contact_state), strict=True):
         slips = np.flatnonzero(s == SLIPPING)
         shear, loaded = np.abs(pair.shear(terms, q))[slips], p[slips] > 0.0
         over = np.where(loaded, shear / np.where(loaded, p[slips], 1.0), np.inf)
@@ -79,10 +177,11 @@ def let_slip(
 
     Otherwise a large displacement of supports distorts the mesh before anything slips.
     """
-    for _ in range(MAX_SLIP_CORRECTIONS if problem.corrections <= 2 else 0):
+    early = problem.corrections <= 2 and not problem.bounded
+    for _ in range(MAX_SLIP_CORRECTIONS if early else 0):
         new = [s.copy() for s in states]
         slip_directions = dict(problem.slip_directions)
-        for s, (pair, _, (p, q)) in zip(new, problem._pairs(at.contact_state), strict=True):
+        for s, (pair, _, (p, q)) in zip(new, problem.pairs(at.contact_state), strict=True):
             if not pair.friction:
                 continue
             p1 = p + found[1][pair.first : pair.first + pair.n, 0]
@@ -99,11 +198,11 @@ def let_slip(
             break
         before, problem.slip_directions = problem.slip_directions, slip_directions
         try:
-            other = problem._solve(at, new, right_sides)
+            other = problem.solve(at, new, right_sides)
         except SingularError:
             problem.slip_directions = before
             break
-        if problem._far(other[0], right_sides):
+        if far(problem, other[0], right_sides):
             problem.slip_directions = before
             break
         found, states = other, new
@@ -112,6 +211,8 @@ def let_slip(
 
 def far(problem: ContactProblem, du: Floats, right_sides: RightHandSides) -> bool:
     """Whether a correction moves the surfaces beyond the contact search distance."""
+    if problem.bounded:
+        return False
     moved = problem.system.by_node(du[:, 0])[:, :2]
     constrained = 2.0 * float(
         np.abs(problem.system.by_node(right_sides.constrained[:, 0])[:, :2]).max()
@@ -132,7 +233,7 @@ def _close_some(
     """Bring unconstrained bodies into contact: close the nearest nodes, increasingly many."""
     gaps = [
         np.where((s == OPEN) & (not pair.tied), pair.trial(terms, p)[0], np.inf)
-        for s, (pair, terms, (p, _)) in zip(states, problem._pairs(at.contact_state), strict=True)
+        for s, (pair, terms, (p, _)) in zip(states, problem.pairs(at.contact_state), strict=True)
     ]
     nearest = min(float(gap.min(initial=np.inf)) for gap in gaps)
     for count in (0, 1, 2, None):
@@ -147,7 +248,7 @@ def _close_some(
         if all(np.array_equal(a, b) for a, b in zip(tried, states, strict=True)):
             break
         try:
-            du, dp, negative = problem._solve(at, tried, right_sides)
+            du, dp, negative = problem.solve(at, tried, right_sides)
         except SingularError:
             continue
         problem.last, problem.loose = tried, str(error)
@@ -168,4 +269,4 @@ def _close_some(
     raise error
 
 
-__all__ = ["far", "held", "let_slip"]
+__all__ = ["chosen", "columns"]
