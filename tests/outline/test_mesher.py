@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from benchmarks.outline_drawings import DIALECTS, SHAPES
 from corota.errors import FileError, InputError
 from corota.outline import circle, outline, polyline
 
@@ -132,6 +133,100 @@ def test_the_command(tmp_path, ending):
     assert "sets of edges: " in done.stdout
     again = ct.mesh.read(tmp_path / f"lever.{ending}")
     assert {"body", "clamp", "slot"} <= {name.lower() for name in again.edge_sets}
+
+
+def test_a_refused_drawing_gets_a_picture(tmp_path):
+    pytest.importorskip("matplotlib")
+    drawing = ezdxf.new()
+    corners = [(0, 0), (4, 3), (4, 0), (0, 3)]
+    drawing.modelspace().add_lwpolyline(corners, close=True)
+    drawing.saveas(tmp_path / "a.dxf")
+    done = subprocess.run(
+        [sys.executable, "-m", "corota", "mesh", "a.dxf"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=100, check=False,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "a.refused.png shows where" in done.stderr
+    assert (tmp_path / "a.refused.png").exists()
+
+
+def test_a_hatch_names_its_part_and_a_text_comes_first(tmp_path):
+    drawing = ezdxf.new()
+    space = drawing.modelspace()
+    for x in (0.0, 9.0):
+        space.add_lwpolyline([(x, 0), (x + 4, 0), (x + 4, 4), (x, 4)], close=True)
+    for x, layer in ((0.0, "steel"), (9.0, "rubber")):
+        hatch = space.add_hatch(dxfattribs={"layer": layer})
+        hatch.paths.add_polyline_path([(x, 0), (x + 4, 0), (x + 4, 4), (x, 4)], is_closed=True)
+    space.add_text("pad", dxfattribs={"insert": (10.0, 1.0)})
+    drawing.saveas(tmp_path / "a.dxf")
+    assert set(ct.mesh.outline(tmp_path / "a.dxf").cell_sets) == {"steel", "pad"}
+
+
+def test_layers_of_blocks_and_hidden_layers(tmp_path):
+    """A binary drawing: what is on layer 0 of a block takes its layer; frozen layers are left."""
+    drawing = ezdxf.new("R2018")
+    drawing.layers.add("part")
+    drawing.layers.add("old").freeze()
+    block, space = drawing.blocks.new("INNER"), drawing.modelspace()
+    block.add_lwpolyline([(0, 0), (8, 0), (8, 4), (0, 4)], close=True)
+    block.add_circle((4, 2), 1.0, dxfattribs={"layer": "bore"})
+    drawing.blocks.new("OUTER").add_blockref("INNER", (0.0, 0.0))
+    space.add_blockref("OUTER", (1.0, 1.0), dxfattribs={"layer": "part"})
+    space.add_line((-5.0, 2.0), (20.0, 3.0), dxfattribs={"layer": "old"})
+    drawing.saveas(tmp_path / "a.dxf", fmt="bin")
+    mesh = ct.mesh.outline(tmp_path / "a.dxf")
+    assert set(mesh.edge_sets) == {"part", "bore"}
+    assert "1 entities on the hidden layer 'old'" in mesh.notes
+    space.add_line((-5.0, 2.0), (20.0, 3.0), dxfattribs={"layer": "center"})
+    drawing.saveas(tmp_path / "a.dxf")
+    with pytest.raises(InputError, match="on layer center"):
+        ct.mesh.outline(tmp_path / "a.dxf")
+    assert ct.mesh.outline(tmp_path / "a.dxf", layers=["part", "bore"]).n_nodes == mesh.n_nodes
+
+
+def test_an_svg_drawing(tmp_path):
+    """Rounded rectangle, turned ellipse, circle; layers, colors, texts, a unit, y up."""
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="80mm" viewBox="0 0 40 20" '
+        'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape">'
+        '<g inkscape:label="rim" transform="translate(1 1)">'
+        '<rect x="0" y="0" width="30" height="12" rx="2"/></g>'
+        '<ellipse cx="0" cy="0" rx="4" ry="2" transform="translate(8 7) rotate(30)" '
+        'style="stroke:#ff0000"/>'
+        '<circle cx="22" cy="7" r="3" id="bore" stroke="black"/>'
+        '<path d="M 27 4 c 1 0 2 1 2 2 q 0 1 -1 1 z" stroke="blue"/>'
+        '<path d="M 0 0 L 9 9" style="display:none"/><text x="14" y="4">lever</text></svg>'
+    )
+    mesh = ct.mesh.outline(tmp_path / "a.svg")
+    assert set(mesh.edge_sets) == {"rim", "color_ff0000", "color_blue"}
+    assert list(mesh.cell_sets) == ["lever"]
+    assert "unit of the drawing: mm" in mesh.notes
+    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+    assert (*low, *high) == pytest.approx((2.0, -26.0, 62.0, -2.0))
+    assert length(mesh, "rim") == pytest.approx(2 * (2 * 26 + 2 * 8 + 4 * math.pi), rel=3e-3)
+    blob = 0.5 * 2 * 2 * 1.2
+    area = 4 * (30 * 12 - (4 - math.pi) * 4 - math.pi * 8 - math.pi * 9)
+    assert covered(mesh) == pytest.approx(area, abs=4 * blob * 2)
+    holes = mesh.points[mesh.nodes_of("color_ff0000")] - (16.0, -14.0)
+    c, s = math.cos(math.radians(-30.0)), math.sin(math.radians(-30.0))
+    x, y = (holes @ np.array([[c, -s], [s, c]])).T
+    assert (x / 8.0) ** 2 + (y / 4.0) ** 2 == pytest.approx(np.ones(len(x)), abs=1e-4)
+    (tmp_path / "b.svg").write_text("<svg><path d='M 0 0 X'/></svg>")
+    with pytest.raises((FileError, InputError)):
+        ct.mesh.outline(tmp_path / "b.svg")
+    (tmp_path / "c.svg").write_text("<svg")
+    with pytest.raises(FileError, match="not a readable SVG"):
+        ct.mesh.outline(tmp_path / "c.svg")
+
+
+def test_a_step_face_has_rows_in_its_leaves(tmp_path):
+    DIALECTS["solid"](SHAPES["stage"], tmp_path / "a.step", None)
+    mesh = ct.mesh.outline(tmp_path / "a.step", through=3)
+    leaf = ct.on_line((0.0, 23.0), (1.0, 23.0))
+    left = mesh.points[(mesh.points[:, 0] < 1.5) & (abs(mesh.points[:, 1] - 23.0) < 3.0)]
+    assert len(np.unique(left[:, 0].round(9))) == 4, leaf
+    assert len(mesh.edge_sets) == 12
 
 
 def test_what_is_no_drawing_is_refused(tmp_path):

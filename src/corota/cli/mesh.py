@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,24 +20,31 @@ def run(args: Any, terminal: Terminal) -> int:
     Raises
     ------
     InputError
-        If the target is the drawing, or the outline is not closed.
+        If the target is the drawing, or the outline is not closed; a picture shows where.
     """
     from corota.io.writers import write_mesh
-    from corota.outline import outline
+    from corota.outline import OutlineError, outline
 
     target = Path(args.output or Path(args.outline).with_suffix(".inp").name)
     if os.path.realpath(target) == os.path.realpath(args.outline):
         raise InputError(f"{target} is the outline: name another file (-o)")
-    mesh = outline(
-        args.outline,
-        args.size,
-        through=args.through,
-        triangles=args.triangles,
-        quadratic=args.quadratic,
-        gap=args.gap,
-        layers=args.layers,
-        path=target if target.suffix.lower() == ".msh" else None,
-    )
+    try:
+        mesh = outline(
+            args.outline,
+            args.size,
+            through=args.through,
+            triangles=args.triangles,
+            quadratic=args.quadratic,
+            gap=args.gap,
+            layers=args.layers,
+            path=target if target.suffix.lower() == ".msh" else None,
+        )
+    except OutlineError as error:
+        if find_spec("matplotlib") is None:
+            raise
+        picture = args.plot or f"{target.stem}.refused.png"
+        error.plot(path=picture)
+        raise InputError(f"{args.outline}: {error}; {picture} shows where") from None
     for note in mesh.notes:
         terminal.line(f"  {note}")
     for kind, sets in (("edges", mesh.edge_sets), ("cells", mesh.cell_sets)):

@@ -41,6 +41,24 @@ def corner_sines(kind: str, points: Floats) -> Floats:
     return sines
 
 
+def corner_angles(kind: str, points: Floats) -> Floats:
+    """Angle at each corner, from 0 to 360 degrees counter-clockwise.
+
+    Parameters
+    ----------
+    kind : str
+    points : ndarray, shape (n_cells, n_nodes, 2)
+
+    Returns
+    -------
+    ndarray, shape (n_cells, n_corners) [degrees]
+    """
+    dx, dy, _ = _sides(kind, points)
+    cross = np.roll(dx, 1, 1) * dy - np.roll(dy, 1, 1) * dx
+    along = np.roll(dx, 1, 1) * dx + np.roll(dy, 1, 1) * dy
+    return np.asarray(180.0 - np.degrees(np.arctan2(cross, along)))
+
+
 def _sides(kind: str, points: Floats) -> tuple[Floats, Floats, Floats]:
     """Components and lengths of the sides from each corner to the next, (n_cells, n_corners)."""
     count = KINDS[kind].n_corners

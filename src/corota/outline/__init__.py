@@ -2,7 +2,18 @@
 
 # SPDX-License-Identifier: BSD-3-Clause
 from corota.outline.curves import Curve, arc, circle, line, polyline, spline
-from corota.outline.loops import Loops, clean
+from corota.outline.loops import Loops, OutlineError, clean
 from corota.outline.mesher import outline
 
-__all__ = ["Curve", "Loops", "arc", "circle", "clean", "line", "outline", "polyline", "spline"]
+__all__ = [
+    "Curve",
+    "Loops",
+    "OutlineError",
+    "arc",
+    "circle",
+    "clean",
+    "line",
+    "outline",
+    "polyline",
+    "spline",
+]

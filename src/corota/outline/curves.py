@@ -61,13 +61,74 @@ def line(first: ArrayLike, last: ArrayLike, name: str = "", source: str = "") ->
 
 
 def polyline(
-    points: ArrayLike, name: str = "", closed: bool = False, source: str = ""
+    points: ArrayLike,
+    name: str = "",
+    closed: bool = False,
+    source: str = "",
+    fillet: ArrayLike = 0.0,
 ) -> list[Curve]:
-    """Straight lines from point to point, shape (n, 2) [length]; closed back to the first."""
+    """Straight lines from point to point, with rounded corners.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        Corners [length].
+    name : str
+        Of the edge set.
+    closed : bool
+        Whether a line leads back to the first point.
+    source : str
+        Where they come from, for messages.
+    fillet : float or array_like, shape (n,)
+        Radius of the arc at each corner, 0 for a sharp one [length]; those at the ends of an open
+        polyline are not used.
+
+    Raises
+    ------
+    InputError
+        If a fillet does not fit between its neighbors.
+
+    Examples
+    --------
+    >>> bar = polyline([(0, 0), (4, 0), (4, 2), (0, 2)], closed=True, fillet=[0, 0, 1, 1])
+    >>> [curve.center is not None for curve in bar]
+    [False, False, True, False, True, False]
+    """
     at = _points(points)
-    if closed:
-        at = np.vstack([at, at[:1]])
-    return [line(a, b, name, source) for a, b in pairwise(at)]
+    n = len(at)
+    radii = np.broadcast_to(np.asarray(fillet, dtype=np.float64), (n,)).copy()
+    if not closed:
+        radii[[0, -1]] = 0.0
+    if not (np.isfinite(radii).all() and (radii >= 0.0).all()):
+        raise InputError(f"radii of fillets must be >= 0, not {fillet!r:.80}")
+    size = np.hypot(*(np.roll(at, -1, axis=0) - at).T)
+    ways = (np.roll(at, -1, axis=0) - at) / np.where(size > 0.0, size, 1.0)[:, None]
+    turns = np.array([_turn(ways[k - 1], ways[k]) if radii[k] else 0.0 for k in range(n)])
+    reach = radii * np.abs(np.tan(0.5 * turns))
+    sides = range(n if closed else n - 1)
+    tight = [k for k in sides if reach[k] + reach[(k + 1) % n] > size[k] * (1.0 + 1e-9)]
+    if tight:
+        raise InputError(
+            f"the fillets at the ends of the side from {at[tight[0]].tolist()} do not fit into its "
+            f"length of {size[tight[0]]:.6g}"
+        )
+    found = []
+    for k in range(n):
+        first, last = at[k] - reach[k] * ways[k - 1], at[k] + reach[k] * ways[k]
+        if reach[k]:
+            found += bulge(first, last, math.tan(0.25 * turns[k]), name, source)
+        if k in sides:
+            after = (k + 1) % n
+            end = at[after] - reach[after] * ways[k]
+            if np.hypot(*(end - last)) > 1e-9 * size[k]:
+                found.append(line(last, end, name, source))
+    return found
+
+
+def _turn(before: Floats, after: Floats) -> float:
+    """Angle from one direction to another, to the left [rad]."""
+    cross = before[0] * after[1] - before[1] * after[0]
+    return math.atan2(float(cross), float(before @ after))
 
 
 def arc(

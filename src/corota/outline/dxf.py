@@ -1,4 +1,4 @@
-"""Curves of a DXF drawing, by ezdxf: lines, arcs, circles, polylines, splines, ellipses, blocks."""
+"""Curves of a DXF drawing by ezdxf: lines, arcs, circles, polylines, splines, ellipses, blocks."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -11,10 +11,13 @@ import numpy as np
 from corota.errors import FileError, ResourceError
 from corota.io.regular_file import require_regular
 from corota.outline.curves import Curve, arc, bulge, circle, line, spline
+from corota.outline.drawing import Drawing
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
     from pathlib import Path
+
+    from corota.outline.drawing import Text
 
 #: Unit of each number of ``$INSUNITS`` that has a name here.
 UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 13: "um"}
@@ -26,10 +29,8 @@ MOST_DEPTH = 16
 IGNORED = ("defpoints",)
 
 
-def read_dxf(
-    path: Path, layers: Collection[str] = ()
-) -> tuple[list[Curve], list[tuple[str, tuple[float, float]]], str, list[str]]:
-    """Curves, texts and unit of a drawing.
+def read_dxf(path: Path, layers: Collection[str] = ()) -> Drawing:
+    """Curves, names of parts and unit of a drawing.
 
     Parameters
     ----------
@@ -39,13 +40,9 @@ def read_dxf(
 
     Returns
     -------
-    curves : list of Curve
-        Named by their layer, or by their color where the layer is ``0``.
-    texts : list of (str, (x, y))
-    unit : str
-        Of length; empty if the drawing does not say.
-    notes : list of str
-        What was left out.
+    Drawing
+        Curves are named by their layer, or by their color where the layer is ``0``. Texts, and
+        hatches by their layer, name the part around them.
 
     Raises
     ------
@@ -66,35 +63,49 @@ def read_dxf(
     except (OSError, ezdxf.DXFError, UnicodeDecodeError, ValueError) as error:
         raise FileError(f"{path}: not a readable DXF drawing: {error}") from None
     wanted = {name.lower() for name in layers}
-    curves: list[Curve] = []
-    texts: list[tuple[str, tuple[float, float]]] = []
+    result = Drawing(unit=UNITS.get(int(drawing.header.get("$INSUNITS", 0)), ""))
+    hatches: list[Text] = []
     left: dict[str, int] = {}
-    for entity in _entities(drawing.modelspace(), 0):
-        layer = str(entity.dxf.layer)
+    unseen: dict[str, int] = {}
+    hidden = {each.dxf.name.lower() for each in drawing.layers if each.is_off() or each.is_frozen()}
+    for entity, layer in _entities(drawing.modelspace(), "", 0):
         if (wanted and layer.lower() not in wanted) or layer.lower() in IGNORED:
+            continue
+        if layer.lower() in hidden and not wanted:
+            unseen[layer] = unseen.get(layer, 0) + 1
             continue
         kind = entity.dxftype()
         if kind in ("TEXT", "MTEXT"):
             text = entity.plain_text() if kind == "MTEXT" else entity.dxf.text
             at = entity.dxf.insert
-            texts.append((str(text).strip(), (float(at.x), float(at.y))))
+            result.texts.append((str(text).strip(), (float(at.x), float(at.y))))
             continue
-        found = _curves_of(entity, kind, _name(entity, layer))
+        if kind == "HATCH" and layer != "0":
+            hatches += [(layer, at) for at in _within(entity)]
+            continue
+        source = f"{kind} #{entity.dxf.handle}" + (f" on layer {layer}" if layer != "0" else "")
+        found = _curves_of(entity, kind, _name(entity, layer), source)
         if found is None:
             left[kind] = left.get(kind, 0) + 1
         else:
-            curves += found
-    notes = [f"{count} entities {kind} are no outline" for kind, count in sorted(left.items())]
-    return curves, texts, UNITS.get(int(drawing.header.get("$INSUNITS", 0)), ""), notes
+            result.curves += found
+    result.texts += hatches  # a text comes first
+    result.notes = [
+        f"{count} entities {kind} are no outline" for kind, count in sorted(left.items())
+    ] + [f"{count} entities on the hidden layer {name!r}" for name, count in unseen.items()]
+    return result
 
 
-def _entities(space: Any, depth: int) -> Iterator[Any]:
-    """Entities, blocks resolved."""
+def _entities(space: Any, around: str, depth: int) -> Iterator[tuple[Any, str]]:
+    """Entities with their layer, blocks resolved: what is on layer 0 there takes that `around`."""
     for entity in space:
+        layer = str(entity.dxf.layer)
+        if layer == "0" and around:
+            layer = around
         if entity.dxftype() == "INSERT" and depth < MOST_DEPTH:
-            yield from _entities(entity.virtual_entities(), depth + 1)
+            yield from _entities(entity.virtual_entities(), layer, depth + 1)
         else:
-            yield entity
+            yield entity, layer
 
 
 def _name(entity: Any, layer: str) -> str:
@@ -104,9 +115,9 @@ def _name(entity: Any, layer: str) -> str:
     return "" if color in (0, 7, 256) else f"color_{color}"
 
 
-def _curves_of(entity: Any, kind: str, name: str) -> list[Curve] | None:
+def _curves_of(entity: Any, kind: str, name: str, source: str) -> list[Curve] | None:
     """Curves of an entity; None if it is none."""
-    data, source = entity.dxf, f"{kind} #{entity.dxf.handle}"
+    data = entity.dxf
     # Coordinates of the object: in a plane that is seen from below x runs the other way.
     way = -1.0 if data.hasattr("extrusion") and data.extrusion.z < 0.0 else 1.0
     if kind == "LINE":
@@ -129,12 +140,32 @@ def _curves_of(entity: Any, kind: str, name: str) -> list[Curve] | None:
         at = [(v.dxf.location, float(v.dxf.get("bulge", 0.0))) for v in entity.vertices]
         points = [(way * float(p.x), float(p.y), way * bend) for p, bend in at]
         return _bulged(points, bool(entity.is_closed), name, source)
+    if kind == "POLYLINE" and entity.is_3d_polyline:
+        flat = [(float(v.dxf.location.x), float(v.dxf.location.y), 0.0) for v in entity.vertices]
+        return _bulged(flat, bool(entity.is_closed), name, source)
     if kind in ("SPLINE", "ELLIPSE"):
         from ezdxf import path as paths
 
         whole = paths.make_path(entity)
         return spline([_xy(p) for p in whole.flattening(_tolerance(whole))], name, source)
     return None
+
+
+def _within(hatch: Any) -> list[tuple[float, float]]:
+    """A point within each hatched area: the middle of a chord through it."""
+    from ezdxf import path as paths
+
+    found = []
+    for boundary in paths.from_hatch(hatch):
+        at = np.array([_xy(p) for p in boundary.flattening(_tolerance(boundary))])
+        x, y = at.T
+        level = float(np.sort(np.unique(y))[:2].mean())
+        nx, ny = np.roll(x, -1), np.roll(y, -1)
+        spans = (y > level) != (ny > level)
+        crossings = np.sort((x + (level - y) / np.where(spans, ny - y, 1.0) * (nx - x))[spans])
+        if len(crossings) > 1:
+            found.append((float(crossings[:2].mean()), level))
+    return found
 
 
 def _bulged(

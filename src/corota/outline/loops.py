@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,6 +25,28 @@ if TYPE_CHECKING:
 GAP = 1e-5
 #: Places that a message lists.
 LISTED = 5
+
+
+class OutlineError(InputError):
+    """Curves that are no closed outline, with the places.
+
+    Parameters
+    ----------
+    message : str
+    curves : sequence of Curve
+    places : ndarray, shape (n, 2)
+        Where it is open, crosses itself, or more than two curves meet [length].
+    """
+
+    def __init__(
+        self, message: str, curves: Sequence[Curve] = (), places: Floats | None = None
+    ) -> None:
+        super().__init__(message)
+        self.curves = list(curves)
+        self.places = np.zeros((0, 2)) if places is None else places
+
+    # A convenience: a function of a higher layer, which loads at its first call.
+    plot = lazy("corota.plots.refused_outline:refused_outline")
 
 
 @dataclass
@@ -72,8 +95,10 @@ def clean(curves: Sequence[Curve], gap: float = 0.0) -> Loops:
 
     Raises
     ------
-    InputError
+    OutlineError
         If curves cross, end without a neighbor or meet in threes, with the places.
+    InputError
+        If there are no curves.
     """
     given = [c for c in curves if len(c.points) > 1]
     if not given:
@@ -149,6 +174,7 @@ def _refuse_crossings(curves: list[Curve], ends: Ints, gap: float) -> None:
     step = last - first
     low, high = np.minimum(first, last) - gap, np.maximum(first, last) + gap
     places: list[str] = []
+    crossings: list[Floats] = []
     for k in range(len(first)):
         near = (owner > owner[k]) & (low <= high[k]).all(axis=1) & (high >= low[k]).all(axis=1)
         rows = np.flatnonzero(near)
@@ -174,12 +200,15 @@ def _refuse_crossings(curves: list[Curve], ends: Ints, gap: float) -> None:
                 sources = " and ".join(
                     filter(None, (curves[owner[k]].source, curves[owner[row]].source))
                 )
+                crossings.append(at)
                 places.append(f"({at[0]:.6g}, {at[1]:.6g})" + (f" ({sources})" if sources else ""))
     if places:
         places = list(dict.fromkeys(places))
-        raise InputError(
+        raise OutlineError(
             f"curves cross at {_some(places)}: trim them there in the drawing, or move what is no "
-            "outline to a layer that is left out"
+            "outline to a layer that is left out",
+            curves,
+            np.array(crossings),
         )
 
 
@@ -195,15 +224,19 @@ def _chained(
     if loose:
         distance = _nearest_gap(points[loose])
         hint = f"; the nearest ends are {distance:.3g} apart" if distance else ""
-        raise InputError(
+        raise OutlineError(
             f"the outline is open at {_some([_place(points[p]) for p in loose])}{hint}: close it, "
-            f"or give a larger gap than {gap:.3g}"
+            f"or give a larger gap than {gap:.3g}",
+            curves,
+            points[loose],
         )
     many = [p for p, meeting in at.items() if len(meeting) > 2]
     if many:
-        raise InputError(
+        raise OutlineError(
             f"three or more curves meet at {_some([_place(points[p]) for p in many])}: an outline "
-            "has two at each corner"
+            "has two at each corner",
+            curves,
+            points[many],
         )
     left = set(range(len(curves)))
     loops = []
@@ -277,4 +310,4 @@ def _some(places: list[str]) -> str:
     return ", ".join(places[:LISTED]) + more
 
 
-__all__ = ["Loops", "area", "clean", "contains"]
+__all__ = ["Loops", "OutlineError", "area", "clean", "contains"]

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import math
-import re
 import tempfile
-from itertools import pairwise
+from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 from shutil import copyfile
 from typing import TYPE_CHECKING, Any, cast
@@ -15,33 +15,28 @@ import numpy as np
 
 from corota.errors import FileError, InputError, ResourceError
 from corota.io.gmsh.reader import read_gmsh
-from corota.mesh.quality import corner_sines
+from corota.mesh.quality import corner_angles
 from corota.outline.curves import Curve
+from corota.outline.drawing import DRAWINGS, set_name
+from corota.outline.four_sided import mesh_four_sided
 from corota.outline.loops import Loops, clean, contains
+from corota.outline.solids import SOLIDS, read_faces
+from corota.outline.strips import AROUND, Faces, Rays, cut, sides_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable
+    from collections.abc import Callable, Collection, Iterable, Iterator
     from os import PathLike
 
-    from numpy.typing import NDArray
-
     from corota.mesh.data import Mesh
-
-    Floats = NDArray[np.float64]
+    from corota.outline.drawing import Text
 
 #: Largest cell relative to the diagonal of the outline, where no size is given.
 SIZE = 0.03
-#: Cells along a full circle.
-AROUND = 24
-#: Length over thickness from which a part with four sides is meshed in rows, and the largest length
-#: of its cells over their height.
-SLENDER, ASPECT = 4.0, 5.0
 #: Growth of the cell size with the distance from a place of small cells.
 GROWTH = 0.25
-#: Numbers of Gmsh: frontal quadrilaterals, blossom recombination.
-ALGORITHM, RECOMBINATION = 8, 1
-#: Formats that Gmsh's geometry kernel reads.
-SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
+#: Numbers of Gmsh: frontal triangles, recombined by blossom. Frontal quadrilaterals leave corners
+#: of 176 degrees at rims.
+ALGORITHM, RECOMBINATION = 6, 1
 
 
 def outline(
@@ -60,12 +55,12 @@ def outline(
     Parameters
     ----------
     source : path-like or iterable of Curve
-        A drawing (``.dxf``), a face (``.step``, ``.iges``, ``.brep``), or curves
+        A drawing (``.dxf``, ``.svg``), a face (``.step``, ``.iges``, ``.brep``), or curves
         (:mod:`corota.outline.curves`). Closed curves are parts; those within a part are holes.
     size : float
         Largest side of a cell [length]; 3 % of the diagonal by default.
     through : int
-        Cells across the local thickness, at least.
+        Cells across the local thickness, at least; in rows across slender members.
     triangles, quadratic : bool
         Kind of cells; linear quadrilaterals by default, with single triangles where needed.
     gap : float
@@ -79,87 +74,98 @@ def outline(
     -------
     Mesh
         Edge sets by layer or color of the curves; cell sets ``part``, or ``part_1`` ..., or the
-        text that stands in a part. ``notes`` says what was cleaned, the unit, and the sharpest
-        corner of a cell.
+        text that stands in a part. ``notes`` says what was cleaned, the unit, and the corners
+        of the cells.
 
     Raises
     ------
     InputError
-        If the outline is open or crosses itself, with the places.
+        If the outline is open or crosses itself, with the places; ``error.plot(path=...)`` draws
+        them.
     FileError
         If the file is not readable.
     ResourceError
-        If Gmsh, or ezdxf for a drawing, is not installed.
+        If Gmsh, or ezdxf for a drawing, is not installed. Without Gmsh curves whose parts have four
+        sides and no holes are meshed by :func:`corota.mesh.mapped`.
     """
     if size < 0.0 or through < 1:
         raise InputError(f"size must be >= 0 and through >= 1, not {size} and {through}")
-    gmsh = _gmsh()
-    notes: list[str] = []
-    texts: list[tuple[str, tuple[float, float]]] = []
-    kind = "" if not isinstance(source, (str, Path)) else Path(source).suffix.lower()
-    if kind == ".dxf":
-        from corota.outline.dxf import read_dxf
-
-        curves, texts, unit, notes = read_dxf(Path(str(source)), layers)
-        notes += [f"unit of the drawing: {unit}"] if unit else []
-    elif kind and kind not in SOLIDS:
-        raise InputError(
-            f"{source}: outlines are read from .dxf, {', '.join(SOLIDS)}; a mesh is read by "
-            "corota.mesh.read"
-        )
-    elif not kind:
-        curves = []
-        for each in cast("Iterable[Curve | list[Curve]]", source):
-            curves += each if isinstance(each, list) else [each]
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.model.add("outline")
-        if kind in SOLIDS:
-            sizes = _import(gmsh, Path(str(source)), size)
-        else:
-            loops = clean(curves, gap)
-            notes = [*loops.report, *notes]
-            _build(gmsh, loops, texts, size, through)
-            sizes = _sizes(loops, size, through)
-        mesh = _mesh(gmsh, sizes, triangles, quadratic, path)
-    except Exception as error:
-        if isinstance(error, (InputError, FileError, ResourceError)):
-            raise
-        raise InputError(f"Gmsh could not mesh the outline: {error}") from None
-    finally:
-        gmsh.finalize()
-    worst = min(float(corner_sines(c.kind, mesh.points[c.nodes]).min()) for c in mesh.cells)
-    angle = np.degrees(np.arcsin(np.clip(worst, -1.0, 1.0)))
+    curves, texts, notes = _read(source, layers)
+    loops = clean(curves, gap)
+    notes = [*loops.report, *notes]
+    size = size or SIZE * float(np.hypot(*np.ptp(loops.points, axis=0)))
+    faces = cut(loops, size, through)
+    names = _part_names(loops, texts)
+    if find_spec("gmsh") is None and path is None and not triangles:
+        mesh = mesh_four_sided(faces, names, size, quadratic)
+    else:
+        with _gmsh() as gmsh:
+            _build(gmsh, faces, names)
+            mesh = _mesh(gmsh, _sizes(loops, size, through), triangles, quadratic, path)
+    corners = [corner_angles(c.kind, mesh.points[c.nodes]) for c in mesh.cells]
+    least, most = min(c.min() for c in corners), max(c.max() for c in corners)
     counts = ", ".join(f"{len(c):,} {c.kind}" for c in mesh.cells)
-    mesh.notes = [*notes, f"{mesh.n_nodes:,} nodes, {counts}; sharpest corner {angle:.0f} degrees"]
+    mesh.notes = [
+        *notes,
+        f"{mesh.n_nodes:,} nodes, {counts}; corners of {least:.0f} to {most:.0f} degrees",
+    ]
     return mesh
 
 
-def _gmsh() -> Any:
+def _read(
+    source: str | PathLike[str] | Iterable[Curve], layers: Collection[str]
+) -> tuple[list[Curve], list[Text], list[str]]:
+    """Curves, texts and notes of a source."""
+    if not isinstance(source, (str, Path)):
+        curves = []
+        for each in cast("Iterable[Curve | list[Curve]]", source):
+            curves += each if isinstance(each, list) else [each]
+        return curves, [], []
+    path = Path(source)
+    kind = path.suffix.lower()
+    if kind in SOLIDS:
+        with _gmsh() as gmsh:
+            return read_faces(gmsh, path), [], []
+    if kind not in DRAWINGS:
+        raise InputError(
+            f"{source}: outlines are read from {', '.join([*DRAWINGS, *SOLIDS])}; a mesh is read "
+            "by corota.mesh.read"
+        )
+    drawing = DRAWINGS[kind](path, layers)
+    unit = [f"unit of the drawing: {drawing.unit}"] if drawing.unit else []
+    return drawing.curves, drawing.texts, [*drawing.notes, *unit]
+
+
+@contextmanager
+def _gmsh() -> Iterator[Any]:
+    """Gmsh with an empty model, for one outline."""
     try:
         import gmsh
     except (ImportError, OSError) as error:
         raise ResourceError(
             f"outlines are meshed by Gmsh, which is not installed ({error}): "
-            "pip install corota[mesh]"
+            "pip install corota[mesh]; without it parts need four sides and no hole"
         ) from None
-    return gmsh
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.add("outline")
+        yield gmsh
+    except (InputError, FileError, ResourceError):
+        raise
+    except Exception as error:
+        raise InputError(f"Gmsh could not mesh the outline: {error}") from None
+    finally:
+        gmsh.finalize()
 
 
-def _build(
-    gmsh: Any,
-    loops: Loops,
-    texts: list[tuple[str, tuple[float, float]]],
-    size: float,
-    through: int,
-) -> None:
-    """Give the loops to Gmsh, with a physical group for each name; strips are structured."""
+def _build(gmsh: Any, faces: Faces, names: list[str]) -> None:
+    """Give the faces to Gmsh, with a physical group for each name; members are meshed in rows."""
     geo = gmsh.model.geo
-    corner = [geo.addPoint(x, y, 0.0) for x, y in loops.points]
+    corner = [geo.addPoint(x, y, 0.0) for x, y in faces.points]
     tags: list[int] = []
     groups: dict[str, list[int]] = {}
-    for curve, (a, b) in zip(loops.curves, loops.ends.tolist(), strict=True):
+    for curve, (a, b) in zip(faces.curves, faces.ends.tolist(), strict=True):
         if curve.center is not None:
             center = geo.addPoint(*curve.center, 0.0)
             tag = geo.addCircleArc(corner[a], center, corner[b])
@@ -170,108 +176,53 @@ def _build(
             tag = geo.addLine(corner[a], corner[b])
         tags.append(tag)
         if curve.name:
-            groups.setdefault(_word(curve.name), []).append(tag)
-    rings = [
-        geo.addCurveLoop([-tags[n] if back else tags[n] for n, back in k]) for k in loops.loops
-    ]
-    surfaces = [geo.addPlaneSurface([rings[k] for k in part]) for part in loops.parts]
-    for part, surface in zip(loops.parts, surfaces, strict=True):
-        counts = _strip(loops, part, size or _largest(loops), through)
-        for (number, _), count in zip(loops.loops[part[0]], counts, strict=False):
-            geo.mesh.setTransfiniteCurve(tags[number], count + 1)
-        if counts:
-            geo.mesh.setTransfiniteSurface(surface)
+            groups.setdefault(set_name(curve.name), []).append(tag)
+    surfaces = []
+    for number, face in enumerate(faces.faces):
+        loops = [geo.addCurveLoop([-tags[k] if back else tags[k] for k, back in loop])
+                 for loop in face]  # fmt: skip
+        surfaces.append(geo.addPlaneSurface(loops))
+        if number in faces.rows:
+            for (k, _), count in zip(face[0], faces.rows[number], strict=True):
+                geo.mesh.setTransfiniteCurve(tags[k], count + 1)
+            geo.mesh.setTransfiniteSurface(surfaces[-1])
     geo.synchronize()
     for name, members in groups.items():
         gmsh.model.addPhysicalGroup(1, members, name=name)
-    names: dict[str, list[int]] = {}
-    for number, (part, surface) in enumerate(zip(loops.parts, surfaces, strict=True), start=1):
-        polygon = loops.polygon(part[0])
-        inside = [text for text, at in texts if text and contains(polygon, np.array(at))]
-        plain = "part" if len(surfaces) == 1 else f"part_{number}"
-        name = _word(inside[0]) if inside else plain
-        names.setdefault(plain if name in groups else name, []).append(surface)
-    for name, members in names.items():
+    parts: dict[str, list[int]] = {}
+    for part, surface in zip(faces.parts, surfaces, strict=True):
+        parts.setdefault(names[part], []).append(surface)
+    for name, members in parts.items():
         gmsh.model.addPhysicalGroup(2, members, name=name)
 
 
-def _largest(loops: Loops) -> float:
-    """Largest cell where no size is given [length]."""
-    return SIZE * float(np.hypot(*np.ptp(loops.points, axis=0)))
+def _part_names(loops: Loops, texts: list[Text]) -> list[str]:
+    """Name of each part: the text within it, or its number."""
+    taken = {set_name(curve.name) for curve in loops.curves if curve.name}
+    found = []
+    for number, part in enumerate(loops.parts, start=1):
+        plain = "part" if len(loops.parts) == 1 else f"part_{number}"
+        polygon = loops.polygon(part[0])
+        inside = [text for text, at in texts if text and contains(polygon, np.array(at))]
+        name = set_name(inside[0]) if inside else plain
+        found.append(plain if name in taken else name)
+    return found
 
 
-def _strip(loops: Loops, part: list[int], size: float, through: int) -> list[int]:
-    """Cells along the four sides of a slender part without holes; empty for other parts."""
-    sides = [loops.curves[number] for number, _ in loops.loops[part[0]]]
-    if len(part) > 1 or len(sides) != 4:
-        return []
-    pairs = [0.5 * (sides[k].length + sides[k + 2].length) for k in (0, 1)]
-    thin, long = min(pairs), max(pairs)
-    if long < SLENDER * thin:
-        return []
-    across = max(through, math.ceil(thin / size))
-    along = math.ceil(long / min(size, ASPECT * thin / across))
-    for side in sides:
-        if side.center is not None or side.smooth:
-            first, last = side.points[1] - side.points[0], side.points[-1] - side.points[-2]
-            turn = abs(math.remainder(math.atan2(last[1], last[0]) - math.atan2(first[1], first[0]),
-                                      2.0 * math.pi))  # fmt: skip
-            along = max(along, math.ceil(AROUND * turn / (2.0 * math.pi)))
-    counts = [along, across] if pairs[0] > pairs[1] else [across, along]
-    return counts * 2
-
-
-def _import(gmsh: Any, path: Path, size: float) -> Callable[..., float]:
-    """Read faces by Gmsh's geometry kernel; they must lie in a plane z = constant."""
-    from corota.io.regular_file import require_regular
-
-    require_regular(path)
-    faces = [tag for dim, tag in gmsh.model.occ.importShapes(str(path)) if dim == 2]
-    gmsh.model.occ.synchronize()
-    faces = faces or [tag for _, tag in gmsh.model.getEntities(2)]
-    if not faces:
-        raise InputError(f"{path}: there is no face; export a planar face, not a solid or a curve")
-    low_x, low_y, low_z, high_x, high_y, high_z = gmsh.model.getBoundingBox(-1, -1)
-    diagonal = float(np.hypot(high_x - low_x, high_y - low_y))
-    if high_z - low_z > 1e-6 * diagonal:
-        raise InputError(f"{path}: the faces do not lie in a plane of constant z")
-    for number, face in enumerate(faces, start=1):
-        name = "part" if len(faces) == 1 else f"part_{number}"
-        gmsh.model.addPhysicalGroup(2, [face], name=name)
-    for _, tag in gmsh.model.getBoundary([(2, f) for f in faces], combined=True, oriented=False):
-        gmsh.model.addPhysicalGroup(1, [tag], name=f"curve_{tag}")
-    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", AROUND)
-    largest = size or SIZE * diagonal
-    return lambda dim, tag, x, y, z, lc: min(lc, largest)
-
-
-def _sizes(loops: Loops, size: float, through: int) -> Callable[..., float]:
-    """Size of the cells at a place, as Gmsh requests it."""
+def _sizes(loops: Loops, largest: float, through: int) -> Callable[..., float]:
+    """Size of the cells at a place, as Gmsh requests it: by curvature and local thickness."""
     from scipy.spatial import cKDTree
 
-    largest = size or _largest(loops)
+    sides = sides_of(loops)
+    rays = Rays(sides)
     places, wanted = [], []
-    starts, steps = [], []
-    for loop in range(len(loops.loops)):
-        at = loops.polygon(loop)
-        starts.append(at)
-        steps.append(np.roll(at, -1, axis=0) - at)
-    first, step = np.vstack(starts), np.vstack(steps)
-    for number, curve in enumerate(loops.curves):
-        at = _spaced(curve.points, largest)
-        middle = 0.5 * (at[:-1] + at[1:])
-        limit = np.full(len(middle), largest)
-        if curve.center is not None:
-            radius = float(np.hypot(*(curve.points[0] - curve.center)))
-            limit = np.minimum(limit, 2.0 * np.pi * radius / AROUND)
-        elif curve.smooth:
-            limit = np.minimum(limit, 2.0 * np.pi * _radii(curve.points, middle) / AROUND)
-        along = np.diff(at, axis=0)
-        normal = np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)[:, None]
-        if _runs_backwards(loops, number):
-            normal = -normal
-        thickness = _thickness(middle, normal, first, step)
-        places.append(middle)
+    for side in sides:
+        count = math.ceil(side.length / largest)
+        s = np.union1d(side.along, side.length * np.linspace(0.0, 1.0, count + 1))
+        s = 0.5 * (s[:-1] + s[1:])
+        limit = 2.0 * np.pi * side.radius(s) / AROUND
+        thickness = rays.hit(side.chord(s), side.inward(s))[0]
+        places.append(side.chord(s))
         wanted.append(np.minimum(limit, thickness / through))
     tree, small = cKDTree(np.vstack(places)), np.concatenate(wanted)
 
@@ -280,54 +231,6 @@ def _sizes(loops: Loops, size: float, through: int) -> Callable[..., float]:
         return float(np.minimum(largest, small[near] + GROWTH * distance).min())
 
     return at_place
-
-
-def _spaced(points: Floats, size: float) -> Floats:
-    """Points of a polygon with others between that are not farther apart than `size`."""
-    found = [points[:1]]
-    for a, b in pairwise(points):
-        count = max(1, int(np.ceil(np.hypot(*(b - a)) / size)))
-        found.append(a + (b - a) * (np.arange(1, count + 1) / count)[:, None])
-    return np.vstack(found)
-
-
-def _radii(points: Floats, at: Floats) -> Floats:
-    """Radius of curvature of a spline, by the circle through three points, at the nearest ones."""
-    if len(points) < 3:
-        return np.full(len(at), np.inf)
-    before, after = np.diff(points[:-1], axis=0), np.diff(points[1:], axis=0)
-    chord = points[2:] - points[:-2]
-    turn = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
-    product = np.hypot(*before.T) * np.hypot(*after.T) * np.hypot(*chord.T)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        radius = np.where(turn > 1e-12 * product.max() ** (2 / 3), product / (2.0 * turn), np.inf)
-    apart = np.linalg.norm(at[:, None] - points[None, 1:-1], axis=2)
-    return np.asarray(radius[apart.argmin(axis=1)])
-
-
-def _runs_backwards(loops: Loops, number: int) -> bool:
-    """Whether the material is to the right of a curve: loops are counter-clockwise, holes too."""
-    outer = {part[0] for part in loops.parts}
-    for k, loop in enumerate(loops.loops):
-        for n, back in loop:
-            if n == number:
-                return back if k in outer else not back
-    return False
-
-
-def _thickness(at: Floats, normal: Floats, first: Floats, step: Floats) -> Floats:
-    """Distance to the opposite side along the inward normal, shape (n,)."""
-    found = np.full(len(at), np.inf)
-    for k in range(len(at)):
-        cross = normal[k, 0] * step[:, 1] - normal[k, 1] * step[:, 0]
-        apart = first - at[k]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            distance = (apart[:, 0] * step[:, 1] - apart[:, 1] * step[:, 0]) / cross
-            share = (apart[:, 0] * normal[k, 1] - apart[:, 1] * normal[k, 0]) / cross
-        own = 1e-6 * np.hypot(*step.T)
-        hit = (share >= -1e-9) & (share <= 1.0 + 1e-9) & (distance > own)
-        found[k] = distance[hit].min(initial=np.inf)
-    return found
 
 
 def _mesh(
@@ -355,11 +258,6 @@ def _mesh(
         if path is not None:
             copyfile(own, path)
         return read_gmsh(own)
-
-
-def _word(name: str) -> str:
-    """Name of a set from that of a layer or a text."""
-    return re.sub(r"\W+", "_", name.strip()).strip("_") or "part"
 
 
 __all__ = ["outline"]

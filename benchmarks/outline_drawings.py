@@ -113,6 +113,21 @@ def notch(length: float = 40.0, height: float = 12.0, r: float = 5.0) -> list[Pi
     ]
 
 
+def _hooks() -> list[Piece]:
+    """A bent leaf of two straight legs and half a ring, 1 thick."""
+    half = math.pi
+    return [
+        (("line", (0.0, 0.0), (30.0, 0.0)), "outer"),
+        (("arc", (30.0, 6.0), 6.0, -0.5 * half, 0.5 * half), "outer"),
+        (("line", (30.0, 12.0), (0.0, 12.0)), "outer"),
+        (("line", (0.0, 12.0), (0.0, 11.0)), "load"),
+        (("line", (0.0, 11.0), (30.0, 11.0)), "inner"),
+        (("arc", (30.0, 6.0), 5.0, 0.5 * half, -0.5 * half), "inner"),
+        (("line", (30.0, 1.0), (0.0, 1.0)), "inner"),
+        (("line", (0.0, 1.0), (0.0, 0.0)), "clamp"),
+    ]
+
+
 SHAPES: dict[str, Shape] = {
     "leaf": Shape([polygon([(0, 0), (60, 0), (60, 0.8), (0, 0.8)], s3="clamp", s1="load")]),
     "bracket": Shape([polygon([(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)], s5="clamp")]),
@@ -131,6 +146,9 @@ SHAPES: dict[str, Shape] = {
                                            for a in (0.0, 2.1, 4.2)]]),
     "tongs": Shape([polygon([(0, 0), (60, 4), (60, 8), (5, 6), (5, 14), (60, 12), (60, 16),
                              (0, 20)], s7="clamp")]),
+    "stage": Shape([polygon([(0, 0), (60, 0), (60, 46), (0, 46)], s0="clamp", s2="load"),
+                    rounded(58, 36, 1.5, 1, 5, "window")]),
+    "hooks": Shape([_hooks()]),
     "two": Shape([polygon([(0, 0), (20, 0), (20, 8), (0, 8)]),
                   polygon([(30, 0), (50, 0), (40, 12)]), circle(40, 4, 2)], parts=2),
 }  # fmt: skip
@@ -287,15 +305,108 @@ def dirty(shape: Shape, path: Path, rng: Any) -> None:
     drawing.saveas(path)
 
 
+def sketch(shape: Shape, path: Path, rng: Any) -> None:
+    """Entities alone, without header and tables: three-dimensional polylines and arcs, CRLF."""
+    rows: list[tuple[int, Any]] = [(0, "SECTION"), (2, "ENTITIES")]
+    for loop in shape.loops:
+        for piece, layer in loop:
+            if piece[0] == "arc":
+                _, (x, y), r, a, b = piece
+                low, high = sorted((math.degrees(a), math.degrees(b)))
+                rows += [(0, "ARC"), (8, layer), (10, x), (20, y), (30, 0.0), (40, r)]
+                rows += [(50, low % 360.0), (51, high % 360.0)]
+                continue
+            rows += [(0, "POLYLINE"), (8, layer), (66, 1), (10, 0.0), (20, 0.0), (30, 0.0), (70, 8)]
+            for x, y in piece[1:]:
+                rows += [(0, "VERTEX"), (8, layer), (10, x), (20, y), (30, 0.0), (70, 32)]
+            rows += [(0, "SEQEND"), (8, layer)]
+    rows += [(0, "ENDSEC"), (0, "EOF")]
+    text = "".join(
+        f"{code:>3}\r\n{value if not isinstance(value, float) else f'{value:.12E}'}\r\n"
+        for code, value in rows
+    )
+    path.write_bytes(text.encode())
+
+
+def vector(shape: Shape, path: Path, rng: Any) -> None:
+    """An SVG page of a drawing program: layers as groups, moved, y down, in millimeters."""
+    groups: dict[str, list[str]] = {}
+    for loop in shape.loops:
+        for piece, layer in loop:
+            (x, y), (u, v) = ends(piece)
+            if piece[0] == "line":
+                words = f"m {x!r},{y!r} {u - x!r},{v - y!r}"
+            else:
+                _, _, r, a, b = piece
+                large, sweep = int(abs(b - a) > math.pi + 1e-9), int(b > a)
+                words = f"M {x!r} {y!r} A {r!r} {r!r} 0 {large} {sweep} {u!r} {v!r}"
+            groups.setdefault(layer, []).append(f'<path style="fill:none" d="{words}"/>')
+    moved = 'transform="translate(3,-2)"'
+    inner = "".join(
+        f'<g id="layer{k}" inkscape:label="{layer}" {moved}>{"".join(paths)}</g>'
+        for k, (layer, paths) in enumerate(groups.items())
+    )
+    path.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="200mm" '
+        'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" viewBox="0 0 200 200">'
+        f"<defs><path d='M 0 0 L 1 1'/></defs>{inner}</svg>"
+    )
+
+
+def solid(shape: Shape, path: Path, rng: Any) -> None:
+    """A STEP file with a planar face for each part; it has no layers."""
+    import gmsh
+
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        occ = gmsh.model.occ
+        wires = []
+        for loop in shape.loops:
+            corners = [occ.addPoint(*ends(piece)[0], 0.0) for piece, _ in loop]
+            tags = []
+            for k, (piece, _) in enumerate(loop):
+                a, b = corners[k], corners[(k + 1) % len(loop)]
+                if piece[0] == "line":
+                    tags.append(occ.addLine(a, b))
+                    continue
+                _, (x, y), r, first, last = piece
+                middle = 0.5 * (first + last)
+                at = occ.addPoint(x + r * math.cos(middle), y + r * math.sin(middle), 0.0)
+                tags.append(occ.addCircleArc(a, at, b, center=False))
+            wires.append(occ.addCurveLoop(tags))
+        for k in range(shape.parts):
+            holes = wires[shape.parts :] if k == shape.parts - 1 else []
+            occ.addPlaneSurface([wires[k], *holes])
+        occ.synchronize()
+        gmsh.write(str(path))
+    finally:
+        gmsh.finalize()
+
+
 DIALECTS: dict[str, Callable[[Shape, Path, Any], None]] = {
     f.__name__: f
-    for f in (exploded, release_12, polylines, old_polylines, mirrored, splines, block, dirty)
+    for f in (
+        exploded,
+        release_12,
+        polylines,
+        old_polylines,
+        mirrored,
+        splines,
+        block,
+        dirty,
+        sketch,
+        vector,
+        solid,
+    )
 }
-#: Outlines of the corpus: each shape in four of the eight dialects.
+#: Ending of the files of dialects that are no DXF.
+ENDINGS = {"vector": ".svg", "solid": ".step"}
+#: Outlines of the corpus: each shape in five of the dialects.
 CORPUS = [
     (name, dialect)
     for k, name in enumerate(SHAPES)
-    for dialect in [list(DIALECTS)[(k + j) % len(DIALECTS)] for j in (0, 2, 4, 7)]
+    for dialect in [list(DIALECTS)[(5 * k + j) % len(DIALECTS)] for j in range(5)]
 ]
 
 # -- drawings that are refused -----------------------------------------------------------
@@ -322,4 +433,4 @@ REFUSED: dict[str, tuple[Callable[[Path], None], str]] = {
 }  # fmt: skip
 
 
-__all__ = ["CORPUS", "DIALECTS", "REFUSED", "SHAPES", "Shape"]
+__all__ = ["CORPUS", "DIALECTS", "ENDINGS", "REFUSED", "SHAPES", "Shape", "ends"]
