@@ -206,6 +206,103 @@ def double_parallelogram() -> tuple[ct.Results, list[Row]]:
     ]  # fmt: skip
 
 
+def folded() -> tuple[ct.Results, list[Row]]:
+    """The folded beam of a comb drive: two double parallelograms carry the shuttle.
+
+    Eight leaves, 24 E I / L^3: Legtenberg, Groeneveld and Elwenspoek, J. Micromech. Microeng. 6
+    (1996) 320; across all eight leaves stretch in pairs, 2 E A / L.
+    """
+    places = (0.0, 20.0, 60.0, 80.0)
+    up = [straight((x, 0), (x, 100)) for x in places]
+    down = [straight((x, 0), (x, -100)) for x in places]
+    model, ends = frame(
+        *up, *down, stages={"upper": (40.0, 100.0), "lower": (40.0, -100.0), "shuttle": (40.0, 0.0)}
+    )
+    bending = leaves(model, 0.5)
+    upper, lower, shuttle = (int(model.mesh.nodes_of(n)[0]) for n in ("upper", "lower", "shuttle"))
+    outer, inner = [ends[k][0] for k in (0, 3, 4, 7)], [ends[k][0] for k in (1, 2, 5, 6)]
+    model.fix(outer, rotation=True)
+    model.rigid([end[1] for end in ends[:4]], upper)
+    model.rigid([end[1] for end in ends[4:]], lower)
+    model.rigid(inner, shuttle)
+    model.force([shuttle], x=24.0 * bending / 1e6 * 10.0)
+    model.stage("shuttle", axis="x")
+    results = ct.solve(model, ct.Static(increments=5), threads=1)
+    return results, [
+        ("24 E I / L^3 at the start", results.history("axis stiffness")[0], 24 * bending / 1e6),
+        ("lateral stiffness 2 E A / L", results.history("lateral stiffness")[0],
+         2 * 1e5 * 0.5 / 100),
+        ("parasitic translation / travel at d = L / 10",
+         results.history("parasitic translation")[-1] / results.history("travel")[-1], 0.0),
+    ]  # fmt: skip
+
+
+def let() -> tuple[ct.Results, list[Row]]:
+    """An outside lamina emergent torsional joint: four legs 2 x 1 x 20 in a sheet 1 thick.
+
+    Two legs in series on each side, both sides in parallel: G K / L out of the plane (Jacobsen,
+    Chen, Howell and Magleby, Mech. Mach. Theory 44 (2009) 2098, with rigid connections), with the
+    torsion constant a b^3 (16/3 - 3.36 b / a (1 - b^4 / 12 a^4)) of a rectangle 2 a x 2 b (Roark).
+    Ours is the soap film of Prandtl over the section. In its plane the joint is a spring of legs
+    that bend, 12 E I / L^3: the pull that it must not see.
+    """
+    length, width, sheet, young, nu = 20.0, 2.0, 1.0, 2.0e3, 0.35
+    shear = 0.5 * young / (1.0 + nu)
+    constant = torsion_constant(width, sheet)
+    a, b = 0.5 * width, 0.5 * sheet
+    roark = a * b**3 * (16.0 / 3.0 - 3.36 * b / a * (1.0 - b**4 / (12.0 * a**4)))
+
+    # Right half of the sheet: neck, leg, connection, leg, neck.
+    plates = [
+        ct.mesh.rectangle(w, h, nx=round(2 * w), ny=round(2 * h), origin=(x, y))
+        for x, y, w, h in (
+            (0.0, -4.0, 3.0, 4.0),
+            (0.0, 0.0, 3.0, width),
+            (3.0, 0.0, length, width),
+            (3.0 + length, 0.0, 4.0, width),
+            (3.0 + length, width, 4.0, 2.0),
+            (3.0 + length, 4.0, 4.0, width),
+            (3.0, 4.0, length, width),
+            (0.0, 4.0, 3.0, width),
+            (0.0, 4.0 + width, 3.0, 4.0),
+        )
+    ]
+    model = ct.Model(ct.mesh.merge(*plates))
+    model.section("all", element="Q4I", material=ct.Elastic(E=young, nu=nu), thickness=sheet)
+    end = 8.0 + width
+    model.fix(ct.on_line((0, -4), (3, -4)))
+    model.fix(ct.on_line((0, -4), (0, width)), x=0.0, y=None)
+    model.fix(ct.on_line((0, 4), (0, end)), x=0.0, y=None)
+    top = ct.on_line((0, end), (3, end))
+    model.fix(top, x=0.0, y=0.5)
+    model.stage("panel", top, axis="y", allowable={"MISES": 30.0})
+    results = ct.solve(model, ct.Static(increments=5), threads=1)
+    pull = 12.0 * young * sheet * width**3 / 12.0 / length**3
+    return results, [
+        ("torsion constant of a leg", constant, roark),
+        ("stiffness out of the plane G K / L", shear * constant / length, shear * roark / length),
+        ("stiffness in the plane 12 E I / L^3", 2 * results.history("axis stiffness")[0], pull),
+    ]
+
+
+def torsion_constant(width: float, height: float) -> float:
+    """Torsion constant of a rectangle by the analogy of the soap film (Prandtl 1903).
+
+    With nu = 0 and no motion along x the displacement along y of a plate that is stretched by the
+    square root of 2 in x obeys E (v,xx + v,yy) = -b: v = b phi / 2 E, K = 2 times the integral of
+    phi, which the strain energy gives.
+    """
+    young, load = 1.0, 1e-6
+    model = ct.Model(ct.mesh.rectangle(width / np.sqrt(2.0), height, nx=40, ny=20, cell="quad8"))
+    model.section("all", element="Q8", material=ct.Elastic(E=young, nu=0.0, rho=1.0))
+    model.fix("all", x=0.0, y=None)
+    for side in ("left", "right", "bottom", "top"):
+        model.fix(side, x=None, y=0.0)
+    model.gravity(0.0, load)
+    energy = ct.solve(model, ct.Static(nlgeom=False), threads=1).history("strain energy")[-1]
+    return float(8.0 * np.sqrt(2.0) * young * energy / load**2)
+
+
 def cosine() -> tuple[ct.Results, list[Row]]:
     """A beam of cosine shape with height 6 t whose middle cannot turn: a bistable switch.
 
@@ -275,6 +372,8 @@ JOINTS = {
     "notch": notch,
     "parallelogram": parallelogram,
     "double-parallelogram": double_parallelogram,
+    "folded": folded,
+    "let": let,
     "cosine": cosine,
     "v-beam": v_beam,
 }
