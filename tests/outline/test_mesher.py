@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -227,6 +228,25 @@ def test_a_step_face_has_rows_in_its_leaves(tmp_path):
     left = mesh.points[(mesh.points[:, 0] < 1.5) & (abs(mesh.points[:, 1] - 23.0) < 3.0)]
     assert len(np.unique(left[:, 0].round(9))) == 4, leaf
     assert len(mesh.edge_sets) == 12
+
+
+def test_the_gripper_of_the_page(tmp_path, monkeypatch, capsys):
+    """docs/howto/flexure.md: from a drawing to travel, margin and report, beside a guided beam."""
+    page = Path(__file__).parents[2] / "docs" / "howto" / "flexure.md"
+    section = page.read_text(encoding="utf-8").split("## A gripper from its drawing")[1]
+    program = section.split("```\n")[1]
+    monkeypatch.chdir(tmp_path)
+    exec(compile(program, "page", "exec"), {})
+    printed = dict(row.rsplit(" ", 1) for row in capsys.readouterr().out.strip().splitlines())
+    values = {name: float(value) for name, value in printed.items()}
+    bending = 70e3 * 6.0 * 0.6**3 / 12.0
+    low, high = (
+        2 * 12 * bending / (long**3 - rigid**3) for long, rigid in ((42, 30), (41.2, 30.8))
+    )
+    assert low < values["stiffness"] < high
+    for name in ("travel", "safety factor", "stiffness"):
+        assert f"{values[name]:.2f}" in section or f"{values[name]:.3f}" in section, name
+    assert (tmp_path / "gripper.html").exists()
 
 
 def test_what_is_no_drawing_is_refused(tmp_path):

@@ -82,6 +82,16 @@ def test_rings_and_bends_take_as_many_cells_as_their_angle_needs():
     assert {m[2] for m in members(faces)} == {4}
 
 
+def test_a_wide_link_between_leaves_is_cut_off_beside_its_ends():
+    """Two leaves 0.6 x 6 and a link 6 x 30 between: three members, the link's within its ends."""
+    right = [(0.3, 0), (0.3, 6), (3, 6), (3, 36), (0.3, 36), (0.3, 42)]
+    outline = right + [(-x, y) for x, y in reversed(right)]
+    thin, also, link = members(faces_of(polyline(outline, closed=True), 1.0))
+    for leaf in (thin, also):
+        assert leaf[:3] == pytest.approx((0.6, 6.0, 4))
+    assert link[:2] == pytest.approx((6.0, 24.0))
+
+
 def test_bulky_parts_and_members_with_holes_keep_their_outline():
     plate = polyline([(0, 0), (40, 0), (40, 20), (0, 20)], closed=True)
     assert not faces_of(plate).rows

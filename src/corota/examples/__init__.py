@@ -68,7 +68,7 @@ def load(name: str) -> Model:
 
 
 def path(file: str) -> Path:
-    """Path of a file of the examples: ``"gripper.msh"``, a mesh of Gmsh.
+    """Path of a file of the examples: ``"gripper.msh"``, a mesh, ``"four_bar.dxf"``, a drawing.
 
     Raises
     ------
@@ -76,5 +76,5 @@ def path(file: str) -> Path:
         If there is no such file.
     """
     here = Path(__file__).resolve().parent
-    files = [p.name for p in here.iterdir() if p.suffix in (".msh", ".inp")]
+    files = [p.name for p in here.iterdir() if p.suffix in (".msh", ".inp", ".dxf")]
     return here / choose(file, sorted(files), "file of the examples")

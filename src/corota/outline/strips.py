@@ -306,28 +306,59 @@ def _strip_between(
         _end(number, sides, rays, s, last, 1, other),
     ]
     (s0, h0, t0), (s1, h1, t1) = ends
-    # An end that is neither an end of one side nor of the other is one at something between.
+    # Half or one thickness away from what stands between the sides, or from an end along which the
+    # outline runs.
     for k, (at, height, place) in enumerate(ends):
         near = SNAP * height
-        closed = (
-            at <= near or at >= side.length - near
-            or place <= near or place >= opposite.length - near
-        )  # fmt: skip
-        if not closed:
-            moved = at + (height if k == 0 else -height)
-            if not s0 < moved < s1:
+        at = _snapped(at, side.length, near)
+        place = _snapped(place, opposite.length, near)
+        closed = at in (0.0, side.length) or place in (0.0, opposite.length)
+        back = 0.0 if closed else height
+        if closed and _runs_along(number, other, sides, at, place, k):
+            back = 0.5 * height
+        if back:
+            at += back if k == 0 else -back
+            if not s0 < at < s1:
                 return []
-            distance, owner, length = _facing(number, sides, rays, np.array([moved]))
+            distance, owner, length = _facing(number, sides, rays, np.array([at]))
             if owner[0] != other:
                 return []
-            ends[k] = (moved, float(distance[0]), float(length[0]))
+            height, place = float(distance[0]), float(length[0])
+        ends[k] = (at, height, place)
     (s0, h0, t0), (s1, h1, t1) = ends
-    s0, s1 = _snapped(s0, side.length, SNAP * h0), _snapped(s1, side.length, SNAP * h1)
-    t0, t1 = _snapped(t0, opposite.length, SNAP * h0), _snapped(t1, opposite.length, SNAP * h1)
     thick = max(h0, h1)
-    if min(s1 - s0, t0 - t1) < SLENDER * thick:
+    if min(s1 - s0, t0 - t1) < (1.0 - 1e-6) * SLENDER * thick:
         return []
     return [_Strip((number, other), [[s0, s1], [t1, t0]], thick)]
+
+
+def _runs_along(
+    number: int, other: int, sides: list[Side], at: float, place: float, end: int
+) -> bool:
+    """Whether the outline leaves a corner at an end of a member along the cut there.
+
+    Not where one straight side joins both corners, which needs no cut.
+    """
+    first, second = sides[number], sides[other]
+    corners = first.at(np.array([at]))[0], second.at(np.array([place]))[0]
+    # Where the first side ends, the second one begins.
+    leaving, arriving = ((first, at), (second, place))[:: 1 if end else -1]
+    for this, (side, length) in enumerate((leaving, arriving)):
+        if length != (0.0 if this else side.length):
+            continue
+        corner = side.points[0 if this else -1]
+        for neighbor in sides:
+            points = neighbor.points[::-1] if this else neighbor.points
+            if neighbor is side or not np.array_equal(points[0], corner):
+                continue
+            apart = [float(np.hypot(*(point - corner))) for point in corners]
+            far = corners[int(np.argmax(apart))]
+            joins = len(points) == 2 and np.hypot(*(points[-1] - far)) < 1e-9 * max(apart)
+            way, wanted = points[1] - points[0], far - corner
+            cosine = way @ wanted / (np.hypot(*way) * np.hypot(*wanted))
+            if cosine > FACING and not joins:
+                return True
+    return False
 
 
 def _snapped(value: float, length: float, near: float) -> float:
