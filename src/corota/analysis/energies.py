@@ -10,7 +10,7 @@ an error of the integration in time.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -126,7 +126,7 @@ class Energies:
     # -- output ------------------------------------------------------------------------
 
     def add_to(
-        self, scalars: dict[str, Any], sums: dict[str, float] | None, where: tuple[int, int]
+        self, scalars: dict[str, float], sums: dict[str, float] | None, where: tuple[int, int]
     ) -> None:
         """Write the energy balance into a frame's scalars.
 
@@ -284,7 +284,7 @@ class Balance:
         self._outside += account.work - before
         self.energy = max(self.energy, abs(self._inside), abs(self._outside))
 
-    def add_to(self, scalars: dict[str, Any]) -> None:
+    def add_to(self, scalars: dict[str, float]) -> None:
         """Write momenta and the scheme's own sums into a frame's scalars."""
         account = self.account
         if self.system.n_multipliers:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -45,7 +45,13 @@ class Point:
 
     u: Floats
     factor: float
-    at: Any
+    at: Evaluation | None
+
+    @property
+    def evaluation(self) -> Evaluation:
+        """The evaluation of an equilibrium; a guess has none."""
+        assert self.at is not None
+        return self.at
 
 
 @dataclass
@@ -117,7 +123,7 @@ class PathSystem(Protocol):
         """Size of the structure [length]."""
         ...
 
-    def restart(self, loose: bool = False, like: Any = None) -> None:
+    def restart(self, loose: bool = False, like: Evaluation | None = None) -> None:
         """Begin an attempt at an increment: discard the data of earlier attempts.
 
         `loose` allows free bodies to be moved until they are constrained, as into contact; `like`
@@ -125,7 +131,7 @@ class PathSystem(Protocol):
         """
         ...
 
-    def evaluate(self, u: Floats, step_time: float) -> Any:
+    def evaluate(self, u: Floats, step_time: float) -> Evaluation:
         """Residual and tangent."""
         ...
 
@@ -133,15 +139,15 @@ class PathSystem(Protocol):
         """Internal forces, and the equations of the other unknowns."""
         ...
 
-    def residual_norms(self, at: Any, u: Floats) -> ResidualNorms:
+    def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
         """Size of the residual."""
         ...
 
-    def refuse(self, at: Any, u: Floats) -> str:
+    def refuse(self, at: Evaluation, u: Floats) -> str:
         """Why an equilibrium cannot be the next of the path, or nothing."""
         ...
 
-    def explain(self, at: Any) -> str:
+    def explain(self, at: Evaluation) -> str:
         """Cause of a failed attempt, for its message."""
         ...
 
@@ -149,14 +155,14 @@ class PathSystem(Protocol):
         """Change of forces and of prescribed dofs per unit of load factor."""
         ...
 
-    def advance(self, at: Any, force: Floats, move: Floats) -> tuple[Floats, Floats]:
+    def advance(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, Floats]:
         """Newton correction at the load factor, and the change per unit of it.
 
         `force` and `move` are those of :meth:`load_rate`.
         """
         ...
 
-    def rate(self, at: Any, force: Floats, move: Floats) -> tuple[Floats, int]:
+    def rate(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, int]:
         """Change per unit of load factor, and negative pivots (-1 if unknown)."""
         ...
 
@@ -164,7 +170,7 @@ class PathSystem(Protocol):
         """All unknowns for forces of shape (n_dofs,), with the last factorization."""
         ...
 
-    def ahead(self, at: Any, rate: Floats) -> float:
+    def ahead(self, at: Evaluation, rate: Floats) -> float:
         """Whether a direction points away from the kink since the committed state.
 
         Positive if so, negative if it points back, 0 where the path has no kink.
@@ -222,7 +228,7 @@ class SmoothPath:
         """Forces at the dofs."""
         return self.evaluate(u, step_time).internal
 
-    def restart(self, loose: bool = False, like: Any = None) -> None:
+    def restart(self, loose: bool = False, like: Evaluation | None = None) -> None:
         """Nothing is kept between attempts."""
 
     def refuse(self, at: Evaluation, u: Floats) -> str:
@@ -237,7 +243,7 @@ class SmoothPath:
         """No kinks are known."""
         return 0.0
 
-    def around(self, *_: Any) -> None:
+    def around(self, *_: object) -> None:
         """No kinks are known."""
 
     def has_corner(self, base: Point, point: Point, period: float) -> bool:

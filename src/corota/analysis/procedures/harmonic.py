@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
-    from corota.model.steps import SteadyState
+    from corota.model.steps import SteadyState, Step
 
     Floats = NDArray[np.float64]
     Complex = NDArray[np.complex128]
@@ -271,7 +271,7 @@ def _complex_gather(lin: LinearMotion, force: Complex) -> Complex:
     return found
 
 
-def _resonance(step: Any, number: int, w: float) -> ModelError:
+def _resonance(step: Step, number: int, w: float) -> ModelError:
     return ModelError(
         f"frequency {w / (2.0 * math.pi):g} is that of an undamped mode in step {number}: give a "
         "damping",

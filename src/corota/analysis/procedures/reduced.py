@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.state import State
     from corota.analysis.terms.linearized import LinearMotion
-    from corota.model.steps import ModalDynamic, SteadyState
+    from corota.model.paths import Modes
+    from corota.model.steps import ModalDamping, ModalDynamic, SteadyState, Step
 
     Floats = NDArray[np.float64]
 
@@ -183,7 +184,7 @@ class Reduced:
         _, turn = np.linalg.eigh(0.5 * (k + k.T))
         return np.hstack([basis, x @ turn])
 
-    def _modal(self, given: Any, own: int, complex_ones: bool, number: int) -> Floats:
+    def _modal(self, given: ModalDamping, own: int, complex_ones: bool, number: int) -> Floats:
         """Damping by critical fractions of each mode; residual modes have that of the last."""
         m = self.shapes.shape[1]
         ratio = damping_ratios(given, own)
@@ -233,7 +234,7 @@ class Reduced:
         return out
 
 
-def last_modes(system: System, state: State, step: Any, number: int) -> tuple[Any, LinearMotion]:
+def last_modes(system: System, state: State, step: Step, number: int) -> tuple[Modes, LinearMotion]:
     """The modes of the last frequency step and the matrices that they belong to.
 
     Raises
@@ -259,10 +260,10 @@ def last_modes(system: System, state: State, step: Any, number: int) -> tuple[An
     return found[-1], lin
 
 
-def damping_ratios(given: Any, count: int) -> Floats:
+def damping_ratios(given: ModalDamping, count: int) -> Floats:
     """Share of critical damping of each mode, from one number or (first, last, share) ranges."""
     out = np.zeros(count)
-    if np.ndim(given) == 0:
+    if isinstance(given, int | float):
         out[:] = float(given)
         return out
     for first, last, share in given:

@@ -14,7 +14,7 @@ in the plane and through the thickness; for an isotropic material ``(1 + nu) alp
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    import corota._core as _core
     from corota.analysis.parallel.communicator import Communicator
+    from corota.errors import Location
     from corota.model.blocks import BlockOfCells
     from corota.model.materials import Material
     from corota.model.model import Model
@@ -114,7 +116,7 @@ class FreeStrains:
 
     def __init__(
         self,
-        core: Any,
+        core: _core.Problem,
         model: Model,
         blocks: Sequence[BlockOfCells],
         communicator: Communicator = ALONE,
@@ -200,7 +202,7 @@ class FreeStrains:
                     )
         return found
 
-    def require_response(self, where: Any) -> None:
+    def require_response(self, where: Location | None) -> None:
         """Refuse temperatures without effect.
 
         Raises
@@ -228,7 +230,7 @@ class FreeStrains:
             if block.responds:
                 self._set(block, self.now)
 
-    def give(self, index: int, rows: Ints, core: Any) -> None:
+    def give(self, index: int, rows: Ints, core: _core.Problem) -> None:
         """Give the strains and temperatures of some elements of a block to another core."""
         for block in self._blocks:
             if block.index == index:
@@ -385,7 +387,11 @@ def _rows(block: _Block, free: Floats, s: Floats) -> Floats:
 
 
 def _block(
-    core: Any, index: int, block: BlockOfCells, expansion: Expansion, stress: Floats | None
+    core: _core.Problem,
+    index: int,
+    block: BlockOfCells,
+    expansion: Expansion,
+    stress: Floats | None,
 ) -> _Block:
     section = block.section
     facts = elements.find(section.element)
@@ -431,7 +437,7 @@ def _follows(material: Material) -> TypeGuard[MaterialTable]:
     return isinstance(material, MaterialTable) and material.varies
 
 
-def _nodes(model: Model, where: str | Ints) -> Any:
+def _nodes(model: Model, where: str | Ints) -> Ints | slice:
     if isinstance(where, str):
         return model.mesh.nodes_of(where) if where else slice(None)
     return where

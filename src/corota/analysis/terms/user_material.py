@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
+
+    import corota._core as _core
+    from corota.model.blocks import BlockOfCells
 
     Floats = NDArray[np.float64]
 
@@ -66,7 +69,7 @@ class UserBlocks:
     blocks : sequence of BlockOfCells
     """
 
-    def __init__(self, core: Any, blocks: Sequence[Any]) -> None:
+    def __init__(self, core: _core.Problem, blocks: Sequence[BlockOfCells]) -> None:
         self.core = core
         # Largest strain so far: a body may return to its shape.
         self.largest = 0.0

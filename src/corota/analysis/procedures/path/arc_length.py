@@ -234,7 +234,7 @@ class PathStepper:
 
     def _accept(self, found: Increment) -> Accepted:
         state, system = self.state, self.system
-        at, u = found.point.at, found.point.u[: system.n_dofs]
+        at, u = found.point.evaluation, found.point.u[: system.n_dofs]
         assert state.energies is not None
         state.energies.add_quasi_static(u, state.u, at)
         state.u, state.at, state.failed = u, at, None

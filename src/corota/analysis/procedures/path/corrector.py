@@ -8,7 +8,7 @@ right-hand sides.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.path_system import PathSystem
     from corota.analysis.procedures.path.controls import Control
 
@@ -92,7 +93,7 @@ def correct(
     system.restart(loose, guess.at)
     at = _search(done, system, base, guess, period, control, settings, report)
     if done.point is not None:
-        done.reason = system.refuse(at, done.point.u)
+        done.reason = system.refuse(done.point.evaluation, done.point.u)
         if done.reason:
             done.point = None
     if done.point is None and at is not None:
@@ -109,7 +110,7 @@ def _search(
     control: Control,
     settings: Settings,
     report: Callable[[int, ResidualNorms, float, float], None] | None,
-) -> Any:
+) -> Evaluation | None:
     """Fill in what became of an attempt; returns the last evaluation, None if there is none."""
     u, factor = guess.u, guess.factor
     n, best, at = system.n_dofs, np.inf, None
@@ -177,7 +178,7 @@ def tangent_at(
     """
     force, move = system.load_rate(point.u)
     # The matrix is overwritten by the factorization's preparation: the point keeps its own.
-    x, negative = system.rate(point.at, force, move)
+    x, negative = system.rate(point.evaluation, force, move)
     if metric is None:
         metric = Metric(system.counted, float(np.sqrt(product(x, x, system.counted))))
         if metric.length <= STILL * system.length:

@@ -70,7 +70,7 @@ def direction(
     du, df = point.u - base.u, point.factor - base.factor
     if metric.dot(tangent.u, tangent.factor, du, df) < 0.0:
         tangent = tangent.reversed()
-    ahead = system.ahead(point.at, tangent.u)
+    ahead = system.ahead(point.evaluation, tangent.u)
     if ahead == 0.0:
         return tangent, None
     length = metric.size(du, df) or 1.0

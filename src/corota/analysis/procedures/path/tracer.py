@@ -184,7 +184,7 @@ class PathTracer(ABC):
         A start that is out of balance, as surfaces that overlap, and one where something moves
         freely, as bodies before they touch, has none before a first load has found its hold.
         """
-        norms = self.system.residual_norms(self.base.at, self.base.u)
+        norms = self.system.residual_norms(self.base.evaluation, self.base.u)
         balanced = norms.size <= max(UNBALANCED, 10.0 * self.settings.tolerance)
         with suppress(SingularError):
             self.tangent, self.metric = tangent_at(self.system, self.base)

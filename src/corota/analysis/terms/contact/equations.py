@@ -106,9 +106,8 @@ class ContactEquations(ContactProblem):
                 self.pivoted += 1
                 self.stage = "contact states by pivoting"
                 return self.moved(z), -1
-        before = self.single
         z, negative = columns(self, at, right_sides, chosen(self, at.contact_state))
-        self.stage = "contact state changed at one node" if self.single > before else ""
+        self.stage = ""
         return self.moved(z[:, 0]), negative
 
     def inherit_kink(self) -> None:
@@ -133,11 +132,6 @@ class ContactEquations(ContactProblem):
         if not outcome.converged:
             settled.reason = f"{outcome.reason}{self.explain(outcome.at)}"
             self.contact_term.revert()
-        elif self.single:
-            settled.note = (
-                f"{outcome.note}; contact state changed at one node at a time in {self.single} "
-                "iterations"
-            ).strip("; ")
         if outcome.converged and self.pivoted:
             said = f"contact states by pivoting in {self.pivoted} iterations"
             settled.note = f"{settled.note}; {said}".strip("; ")

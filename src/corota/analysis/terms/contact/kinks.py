@@ -13,7 +13,7 @@ Source: F. H. Clarke, *Optimization and Nonsmooth Analysis* (1983), ch. 2.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from corota.analysis.terms.term import StatePoint
 
     Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
 
 #: Halvings of the interval in which a jump is searched.
 HALVINGS = 44
@@ -169,8 +170,9 @@ def both_sides(kink: Kink, near: list[Terms]) -> list[Terms]:
 
 
 def _mixed(near: Terms, far: Terms, share: float) -> Terms:
-    def join(name: str) -> Any:
-        return np.concatenate([getattr(near, name), getattr(far, name)])
+    def join(name: str) -> Ints:
+        both: Ints = np.concatenate([getattr(near, name), getattr(far, name)])
+        return both
 
     def weighted(name: str) -> Floats:
         parts = (1.0 - share) * getattr(near, name), share * getattr(far, name)

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -129,7 +129,7 @@ def second_derivatives(
     return entries(0.5 * (values + turned)), entries(0.5 * (values - turned))
 
 
-def _near(term: ContactTerm, pair: Any, terms: Terms) -> tuple[Ints, Ints]:
+def _near(term: ContactTerm, pair: Pair, terms: Terms) -> tuple[Ints, Ints]:
     """Dofs and multipliers of candidate pairs next to closed ones."""
     none = np.zeros((0, 0), np.int64)
     if not term.system.nlgeom:

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -94,7 +94,7 @@ def line_core(
     master: Surface | RigidCurve,
     reach: float,
     depth: float,
-) -> tuple[Any, Surface, Surface | None, float, float]:
+) -> tuple[_core.Contact, Surface, Surface | None, float, float]:
     """The core's pair, its surfaces, its search distance and the depth of a penetration it sees.
 
     Raises

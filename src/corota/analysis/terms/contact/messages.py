@@ -61,8 +61,6 @@ def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
             f"node{'s' if len(flipping) > 1 else ''} {names}"
             f"{', ...' if len(flipping) > 5 else ''} of pair {flipping[0][1].name!r}"
         )
-        if problem.single:
-            said += f"; {problem.single} iterations changed the state of one node at a time"
     if way := gives_way(problem.contact_term):
         said += f"; {way}"
     elif problem.sliding > OFTEN:

@@ -16,7 +16,7 @@ Source: the pivoting of parametric linear complementarity, R. W. Cottle, J.-S. P
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,6 +28,8 @@ from corota.analysis.terms.contact.states import chosen, columns
 from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
@@ -207,7 +209,9 @@ class ContactPathEquations(ContactEquations):
         state = at.contact_state
         if not state.settled:
             corrected = self.last if self.corrections else None
-            before: Any = corrected or [None] * len(self.contact_term.pairs)
+            before: Sequence[NDArray[np.int8] | None] = corrected or [None] * len(
+                self.contact_term.pairs
+            )
             state.settled = [
                 pair.states(terms, p, q, last)
                 for (pair, terms, (p, q)), last in zip(self.pairs(state), before, strict=True)
@@ -227,7 +231,7 @@ class ContactPathEquations(ContactEquations):
         return out
 
 
-def path_system(system: System, notes: list[str]) -> Any:
+def path_system(system: System, notes: list[str]) -> SmoothPath | ContactPathEquations:
     """The system for path following; `notes` collects remarks for the user."""
     return ContactPathEquations(system, notes) if system.contact_term.pairs else SmoothPath(system)
 
@@ -303,7 +307,7 @@ class EventPath:
         self, path: ContactPathEquations, base: Point, tangent: Tangent, states: States
     ) -> None:
         self.path, self.base, self.tangent, self.states = path, base, tangent, states
-        self.at: Evaluation = base.at
+        self.at = base.evaluation
         self.gaps = [terms.gap for terms in self.at.contact_state.terms]
         self.z, self.factor = base.u, base.factor
         self.seen = {(k, i, int(s[i])) for k, s in enumerate(states) for i in range(len(s))}

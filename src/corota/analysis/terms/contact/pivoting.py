@@ -16,7 +16,7 @@ generalized equations*, MRC report 1965 (1979).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -234,7 +234,7 @@ class Pivoting:
         """Pressure, gap, slip and traction as forces: values, then changes by inputs."""
         problem = self.problem
         pair, terms, (p, q) = self.pairs[c.k]
-        moves = rates_of(problem, self.at, du, c.k)
+        (moves,) = rates_of(problem, self.at, du, c.k)
         gap, slip = moves[0][c.rows], moves[1][c.rows]
         gap[:, 0] += terms.gap[c.rows]
         slip[:, 0] += terms.slip[c.rows]
@@ -253,7 +253,7 @@ class Pivoting:
         base: States,
         chosen: list[Chosen],
         slip_directions: list[Floats],
-        values: Any,
+        values: list[tuple[Floats, Floats, Floats, Floats]],
         du: Floats,
         dp: Floats,
         n: int,
@@ -439,7 +439,9 @@ def responses(
     return du, dp
 
 
-def rates_of(problem: ContactProblem, at: Evaluation, du: Floats, only: int | None = None) -> Any:
+def rates_of(
+    problem: ContactProblem, at: Evaluation, du: Floats, only: int | None = None
+) -> list[tuple[Floats, Floats]]:
     """Changes of weighted gaps and slips of each pair, or one, with columns of displacements."""
     moved = np.stack([problem.system.in_space(u) for u in du.reshape(problem.n, -1).T], axis=1)
     moved = np.concatenate([moved, np.zeros((1, moved.shape[1]))])
@@ -452,8 +454,8 @@ def rates_of(problem: ContactProblem, at: Evaluation, du: Floats, only: int | No
             change = np.zeros((pair.n, moved.shape[1]))
             np.add.at(change, terms.constraint, np.einsum("tv,tvc->tc", gradient, moved[where]))
             parts.append(change if du.ndim > 1 else change[:, 0])
-        out.append(tuple(parts))
-    return out if only is None else out[0]
+        out.append((parts[0], parts[1]))
+    return out
 
 
 __all__ = ["pivoted"]

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,17 +13,22 @@ from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.linearization import linearized
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.coupling import Coupling
     from corota.analysis.terms.contact.contact import ContactTerm
-    from corota.analysis.terms.contact.gaps import ContactState, Kink
+    from corota.analysis.terms.contact.gaps import ContactState, Kink, Terms
+    from corota.analysis.terms.contact.pair import Pair
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
+    #: A pair, its gaps and slips, and its tractions p and q.
+    Each = tuple[Pair, Terms, tuple[Floats, Floats]]
 
 #: Corrections after which partly covered nodes keep their owners.
 CORRECTIONS_BEFORE_FREEZE = 4
@@ -67,12 +72,12 @@ class ContactProblem:
         Of slipping tractions, by the pair's first multiplier.
     flips : list of ndarray
         How often the state of each constraint has changed.
-    single, sliding, pivoted, corrections : int
-        Single changes, bodies that slid, corrections by pivoting, and all corrections so far.
+    sliding, pivoted, corrections : int
+        Bodies that slid, corrections by pivoting, and all corrections so far.
     waited : int
         Iterations without progress.
-    cautious, pivoting : bool
-        Whether states change one by one, and whether they come from the whole linearized problem.
+    pivoting : bool
+        Whether states come from the whole linearized problem.
     loose : str
         Bodies that were unconstrained until contact was closed.
     kink : Kink or None
@@ -104,10 +109,9 @@ class ContactProblem:
         if self.contact_term.at is not None and self.contact_term.at.states:
             self.last = [s.copy() for s in self.contact_term.at.states]
         self.seen: dict[bytes, int] = {}
-        self.cautious = False
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.contact_term.pairs]
-        self.single = self.sliding = self.corrections = self.pivoted = 0
-        self.pivoting = False  # whether states come from the whole linearized problem
+        self.sliding = self.corrections = self.pivoted = 0
+        self.pivoting = False
         self.least, self.waited = np.inf, 0
         self.stage = ""  # how the last correction was found
         self.relaxing = False  # whether the bodies may move to another equilibrium
@@ -188,7 +192,7 @@ class ContactProblem:
             self.contact_term.border = border
         return border
 
-    def pairs(self, contact_state: ContactState) -> Any:
+    def pairs(self, contact_state: ContactState) -> Iterator[Each]:
         return zip(
             self.contact_term.pairs,
             contact_state.terms,

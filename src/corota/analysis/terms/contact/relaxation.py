@@ -31,7 +31,7 @@ damping.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -336,7 +336,7 @@ class _Forces(ForwardContact):
     multipliers: Floats
     remains = 1.0
 
-    def _count(self, *_: Any) -> None:
+    def _count(self, *_: object) -> None:
         """No work."""
 
     def _commit(

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from corota.analysis.numbered_model import NumberedModel
 
     Floats = NDArray[np.float64]
+    #: The core's pair, its surfaces, its search distance and the depth of a penetration it sees.
+    Core = tuple[_core.Contact, Surface, Surface | None, float, float]
     Ints = NDArray[np.int64]
 
 #: Default search distance of pairs, in edges.
@@ -149,9 +151,7 @@ def _turns(points: Floats, nodes: Ints) -> Floats:
     return np.asarray(np.where(turn > np.pi - SAME, turn - 2.0 * np.pi, turn))
 
 
-def contact_core(
-    system: NumberedModel, item: ContactPair
-) -> tuple[Any, Surface, Surface | None, float, float]:
+def contact_core(system: NumberedModel, item: ContactPair) -> Core:
     """The core's pair, its surfaces, its search distance and the depth of a penetration it sees.
 
     Raises
@@ -268,7 +268,7 @@ def _thickness(system: NumberedModel, slave: Surface) -> Floats:
     return found if len(found) else np.full(1, np.inf)
 
 
-def tie_core(system: NumberedModel, item: Tie) -> tuple[Any, Surface, Surface | None, float, float]:
+def tie_core(system: NumberedModel, item: Tie) -> Core:
     """The same for a tie; slave edges out of its tolerance are not tied."""
     mesh = system.model.mesh
     x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])

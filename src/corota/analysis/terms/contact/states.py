@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.failure import GiveUp
-from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
+from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -23,16 +23,14 @@ if TYPE_CHECKING:
     States = list[NDArray[np.int8]]
     Floats = NDArray[np.float64]
 
-#: Repetitions of a set of states before single changes are made.
+#: Repetitions of a set of states before the whole linearized problem decides.
 MAX_STATE_REPEATS = 2
 #: Repetitions before the increment is given up.
 MAX_REPEATS_BEFORE_CUTBACK = 7
-#: Relative difference of contact residuals that counts as zero.
-RELATIVE_DIFFERENCE = 1e-6
 
 
 def chosen(problem: ContactProblem, contact_state: ContactState) -> States:
-    """States for the next correction; single changes once a set comes back."""
+    """States for the next correction; the whole linearized problem once a set comes back."""
     before: Sequence[NDArray[np.int8] | None] = problem.last or [None] * len(
         problem.contact_term.pairs
     )
@@ -52,40 +50,9 @@ def chosen(problem: ContactProblem, contact_state: ContactState) -> States:
                     "the contact states cycle: the same nodes open, stick and slip as in "
                     f"{problem.seen[key] - 1} earlier iterations"
                 )
-            problem.cautious = problem.cautious or problem.seen[key] > MAX_STATE_REPEATS
-            problem.pivoting = problem.pivoting or problem.cautious
-            if problem.cautious:
-                wanted = _one_change(problem, contact_state, wanted, changed)
+            problem.pivoting = problem.pivoting or problem.seen[key] > MAX_STATE_REPEATS
     problem.last = wanted
     return wanted
-
-
-def _one_change(
-    problem: ContactProblem,
-    contact_state: ContactState,
-    wanted: States,
-    changed: list[NDArray[np.bool_]],
-) -> States:
-    """Only the change with the largest contact residual, and all with negligible ones."""
-    assert problem.last is not None
-    problem.single += 1
-    best, where = -1.0, (0, 0)
-    for k, (pair, terms, (p, q)) in enumerate(problem.pairs(contact_state)):
-        complementarity = np.where(changed[k], pair.violation(terms, p, q), -1.0)
-        # Of equals, as in symmetric models, the first: rounding must not choose.
-        if pair.n and complementarity.max() > (1.0 + RELATIVE_DIFFERENCE) * best:
-            first = int(
-                np.argmax(complementarity >= (1.0 - RELATIVE_DIFFERENCE) * complementarity.max())
-            )
-            best, where = float(complementarity[first]), (k, first)
-    out = [s.copy() for s in problem.last]
-    out[where[0]][where[1]] = wanted[where[0]][where[1]]
-    # Constraints without an opposite surface cannot be closed.
-    for state, pair, terms in zip(
-        out, problem.contact_term.pairs, contact_state.terms, strict=True
-    ):
-        state[terms.area <= COVERED * pair.full] = OPEN
-    return out
 
 
 #: Fraction of the friction bound from which a correction is repeated with slip, and how often.
