@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,16 +16,33 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from corota.analysis.procedures.static import StaticStepper
-    from corota.analysis.terms.contact.relaxation import Aid
 
-#: Increments tried by relaxation where no shorter one is found, relative to the period.
-RELAXED = (1e-3, 1e-2)
-#: The same with drift, where none of these is found.
-DRIFTED = (1e-3, 1e-2, 3e-2)
-#: The same from where a damped motion brings the bodies to rest.
-MOVED = (1e-3, 1e-2)
-#: The same for first increments, in which bodies held only by contact come into contact.
-FIRST_RELAXED = (1e-2, 3e-2, 0.1, 0.2, 0.3)
+
+class Rung(NamedTuple):
+    """A way to the next equilibrium where Newton's method finds none.
+
+    Parameters
+    ----------
+    motion : bool
+        Whether it starts where a damped motion brings the bodies to rest.
+    first : tuple of float
+        Increments to try, of the period: of the first one, in which bodies that contact alone
+        holds come into contact.
+    later : tuple of float
+        And where an equilibrium has ended.
+    """
+
+    motion: bool
+    first: tuple[float, ...]
+    later: tuple[float, ...]
+
+
+#: Tried in turn. Of 286 torture problems relaxation solves an increment in 26, the damped motion in
+#: 5 of the 8 in which relaxation alone fails.
+LADDER = (
+    Rung(False, (1e-2, 3e-2, 0.1, 0.2, 0.3), (1e-3, 1e-2)),
+    Rung(True, (1e-3, 1e-2), (1e-3, 1e-2)),
+)
 #: Halvings of the interval in which a first contact closes.
 HALVINGS = 4
 
@@ -42,18 +59,14 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
     loaded = not stepper.may_relax()
     if loaded and (early or not first or not system.joined):
         return ""
-    fractions: tuple[float, ...]
-    aided: dict[Aid, tuple[float, ...]]
+    ladder = LADDER
     if early or control.step.fixed_increments:
-        fractions = (control.size / control.step.period,)
-        aided = {"drift": fractions, "motion": fractions}
-    else:
-        fractions = FIRST_RELAXED if first else RELAXED
-        aided = {"drift": FIRST_RELAXED if first else DRIFTED, "motion": MOVED}
+        whole = (control.size / control.step.period,)
+        ladder = tuple(Rung(rung.motion, whole, whole) for rung in LADDER)
     if early or loaded:
-        aided = {}
-    tries = _Sizes(fractions, aided, HALVINGS if first else 0)
-    for fraction, aid in tries:
+        ladder = tuple(rung for rung in ladder if not rung.motion)
+    tries = _Sizes(ladder, first)
+    for fraction, motion in tries:
         size = fraction * control.step.period
         target = min([control.time + size, *(s for s in control.stops if s > control.time)])
         prescribed = system.conditions.supports.at(target, state.u)
@@ -66,7 +79,7 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
                 stepper.settings,
                 stepper.report,
                 nearby=loaded,
-                aid=aid,
+                motion=motion,
             )
         except SingularError:
             continue
@@ -95,7 +108,7 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
         return Attempt(target, outcome, contact)
     if loaded:
         return ""
-    tried = "neither relaxation nor a damped motion" if aided else "no relaxation"
+    tried = "neither relaxation nor a damped motion" if len(ladder) > 1 else "no relaxation"
     said = f"; {tried} from the last converged state found an equilibrium nearby"
     if sunk_corner(system):
         return said  # the message has the reason
@@ -103,18 +116,16 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
 
 
 class _Sizes:
-    """Increments to try in turn, and what helps relaxation.
+    """Increments to try in turn, and whether a damped motion begins.
 
-    Between the largest one that closes no contact and one without an equilibrium the first contact
-    is found by bisection.
+    Between the largest first one that closes no contact and one without an equilibrium the first
+    contact is found by bisection.
 
     Parameters
     ----------
-    fractions : tuple of float
-        Of the period, by relaxation alone.
-    aided : dict of str to tuple of float
-        The same with what helps it, in turn.
-    halvings : int
+    ladder : tuple of Rung
+    first : bool
+        Whether it is the first increment.
 
     Attributes
     ----------
@@ -122,29 +133,25 @@ class _Sizes:
         Set by the caller after a try: whether no contact has closed.
     """
 
-    def __init__(
-        self, fractions: tuple[float, ...], aided: dict[Aid, tuple[float, ...]], halvings: int
-    ) -> None:
-        self.fractions, self.aided, self.halvings = fractions, aided, halvings
+    def __init__(self, ladder: tuple[Rung, ...], first: bool) -> None:
+        self.ladder, self.first = ladder, first
         self.nothing_closed = False
 
-    def __iter__(self) -> Iterator[tuple[float, Aid]]:
-        low = 0.0
-        for high in self.fractions:
-            self.nothing_closed = False
-            yield high, ""
-            if self.nothing_closed:
-                low = high
-                continue
-            for _ in range(self.halvings if low else 0):
-                middle = 0.5 * (low + high)
-                self.nothing_closed = False
-                yield middle, ""
-                low, high = (middle, high) if self.nothing_closed else (low, middle)
+    def __iter__(self) -> Iterator[tuple[float, bool]]:
+        for rung in self.ladder:
             low = 0.0
-        for aid, fractions in self.aided.items():
-            for fraction in fractions:
-                yield fraction, aid
+            for high in rung.first if self.first else rung.later:
+                self.nothing_closed = False
+                yield high, rung.motion
+                if self.nothing_closed and not rung.motion:
+                    low = high
+                    continue
+                for _ in range(HALVINGS if low and self.first else 0):
+                    middle = 0.5 * (low + high)
+                    self.nothing_closed = False
+                    yield middle, rung.motion
+                    low, high = (middle, high) if self.nothing_closed else (low, middle)
+                low = 0.0
 
 
-__all__ = ["by_relaxation"]
+__all__ = ["LADDER", "by_relaxation"]

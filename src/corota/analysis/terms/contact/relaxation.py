@@ -8,11 +8,8 @@ correction has none, so the state that is found is an equilibrium of the unregul
 the exact cone of friction. If there are several, the creep selects one.
 
 Where surfaces change what they meet, gaps may jump, and a position that balances may not exist on
-either side. Then no springs are stiff enough, and the bodies `drift`: single corrections are taken,
-each linearized where the last one ended, without a search for balance between them (time steps
-that are implicit in their linearization only). They pass the jump, or come to where positions are
-found again. If that fails as well, an explicit damped `motion` brings them to rest, and Newton's
-method starts from there.
+either side. Then no springs are stiff enough: an explicit damped motion brings the bodies to rest,
+and Newton's method starts from there.
 
 Source: R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control
 Optim. 14 (1976).
@@ -31,12 +28,12 @@ damping.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.analysis.energies import Energies
-from corota.analysis.failure import ElementFailure, GiveUp
+from corota.analysis.failure import ElementFailure
 from corota.analysis.newton import Outcome, newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.equations import (
@@ -58,8 +55,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: What helps where creep alone does not: nothing, drift, a damped motion.
-Aid = Literal["", "drift", "motion"]
 #: Largest number of corrections, of those per position, and residual at which a position is
 #: reached.
 MOST, EACH, REACHED = 400, 14, 1e-6
@@ -68,14 +63,8 @@ FIRST, LARGEST, LEAST = 1e-2, 1e2, 1e-6
 #: Factors on it after a position was reached in few corrections, in more, or not at all; limit of
 #: few.
 EASED, KEPT, TIGHTENED, FEW = 0.25, 0.5, 8.0, 6
-#: Largest distance between positions, in shortest edges of a slave surface; and of a correction in
-#: a drift.
-FARTHEST, FARTHEST_DRIFT = 0.5, 0.25
-#: Springs of a drift; its corrections, at first and at most: every drift has twice as many as the
-#: last.
-DRIFT, FEWEST, LONGEST = 1e-2, 4, 32
-#: Missed positions after which the bodies drift, and those that a position found makes up for.
-MISSED, FORGIVEN = 2.0, 0.25
+#: Largest distance between positions, in shortest edges of a slave surface.
+FARTHEST = 0.5
 
 
 def relax(
@@ -87,7 +76,7 @@ def relax(
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
     rule: Rule = REST,
     nearby: bool = False,
-    aid: Aid = "",
+    motion: bool = False,
 ) -> tuple[Outcome, ContactEquations]:
     """Find an equilibrium by creep; in dynamics (by its `rule`) with the inertia of an increment.
 
@@ -98,15 +87,13 @@ def relax(
     ----------
     nearby : bool
         Whether no node may move farther than half of the shortest edge of the slave surfaces.
-    aid : {"", "drift", "motion"}
-        Whether the bodies drift where no positions are found, or start where a damped motion brings
-        them to rest.
+    motion : bool
+        Whether the bodies start where a damped motion brings them to rest.
     """
     creep = _Creep(rule, system, u, prescribed, step_time, settings, report)
-    creep.aid = aid
     if nearby:
         creep.within = u.copy()
-    return creep.problem.settle(creep.run()), creep.problem
+    return creep.problem.settle(creep.run(motion)), creep.problem
 
 
 class _Creep:
@@ -133,7 +120,6 @@ class _Creep:
         self.corrections = 0
         #: Displacements that the bodies have to stay near.
         self.within: Floats | None = None
-        self.aid: Aid = ""
         #: Whether a damped motion has brought the bodies to where they are.
         self.moved = False
         edges = [float(p.slave.length.min()) for p in self.problem.contact_term.pairs]
@@ -141,28 +127,24 @@ class _Creep:
         self.farthest = FARTHEST * self.edge
         self.stiffness = self.problem.contact_term.nodal
 
-    def run(self) -> Outcome:
-        if self.aid == "motion":
+    def run(self, motion: bool) -> Outcome:
+        """Positions until one needs no springs."""
+        if motion:
             out = self._from_rest()
             if out.converged or not self.moved:
                 return out
         share, tries = FIRST, 0
-        missed, length = 0.0, FEWEST
         while self.corrections < MOST and share <= LARGEST:
             out = self._place(share)
             moved = self._largest(out.u - self.z)
             if out.converged and out.at is not None:
                 out.reason = self.problem.refuse(out.at, out.u)
             if not out.converged or out.reason or moved > self.farthest:
-                share, missed = share * TIGHTENED, missed + 1.0
-                if self.aid == "drift" and missed >= MISSED:
-                    share, missed = self._drift(length), 0.0
-                    length = min(2 * length, LONGEST)
+                share *= TIGHTENED
                 continue
             if self._leaves(out.u):
                 break
             self.z, self.left = out.u, np.zeros_like(self.left)
-            missed = max(missed - FORGIVEN, 0.0)
             share *= EASED if out.iterations <= FEW else KEPT
             if share >= LEAST:
                 continue
@@ -232,42 +214,6 @@ class _Creep:
         problem.since = self.z[: problem.n].copy()
         if share:
             self.system.contact_term.springs = (share * self.stiffness, problem.since)
-
-    def _drift(self, corrections: int) -> float:
-        """Take single corrections, with contact states from the whole linearized problem.
-
-        Returns the springs that were needed.
-        """
-        problem, n, farthest = self.problem, self.problem.n, FARTHEST_DRIFT * self.edge
-        share = DRIFT
-        while corrections and share <= LARGEST:
-            self._begin(share)
-            problem.pivoting = True
-            states, rest = problem.last, self._largest(self.left)
-            part = min(1.0, farthest / rest) if rest else 0.0
-            support = np.zeros(len(self.z))
-            support[:n] = part * self.left
-            self.corrections += 1
-            try:
-                at = problem.evaluate(self.z.copy(), self.step_time, problem.rule)
-                dz, _ = problem.predict(at, support)
-                moved = self._largest(dz)
-                length = min(1.0, farthest / moved) if moved else 1.0
-                z = self.z + length * dz
-                at = problem.evaluate(z, self.step_time, problem.rule)
-                missed = bool(problem.refuse(at, z))
-            except (ElementFailure, GiveUp, SingularError):
-                missed = True
-            if missed:
-                problem.last, share = states, share * TIGHTENED
-                continue
-            self.z, self.left = z, (1.0 - length * part) * self.left
-            corrections -= 1
-            if self.report is not None:
-                norms = problem.residual_norms(at, z)
-                said = f"relaxation, drift, springs {share:.1g}; {problem.stage}".strip("; ")
-                self.report(self.corrections, norms, length * moved, said)
-        return min(share, LARGEST)
 
     def _place(self, share: float) -> Outcome:
         """The next position, with springs of a fraction of the nodal stiffness."""
