@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -41,7 +42,7 @@ class EddyBrake(Term):
 def flying(monkeypatch: pytest.MonkeyPatch, width: float) -> ct.Model:
     """A block 1 x 0.5 of mass 2 that flies along x from x = -6, at a velocity of 5."""
     monkeypatch.setitem(TERMS, "eddy brake", lambda system: EddyBrake(system, width))
-    model = ct.Model(ct.mesh.rectangle(1.0, 0.5, 2, 1, origin=(-6.5, 0.0)))
+    model = ct.Model(ct.mesh.rectangle(1.0, 0.5, 2, 1, origin=(-6.5, 0.0)), name="job")
     model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3, rho=4.0))
     model.fix("all", x=None, y=0.0)
     model.velocity("all", x=5.0)
@@ -107,3 +108,49 @@ def test_linear_procedures_have_its_damping(monkeypatch: pytest.MonkeyPatch) -> 
         assert abs(np.asarray(modes.growth)).min() > 0.1
         found.append(np.concatenate([modes.factors, modes.growth]))
     assert found[0] == pytest.approx(found[1], rel=1e-9)
+
+
+class Counter(EddyBrake):
+    """The same with a history: the heat so far."""
+
+    name = "counter"
+
+    def __init__(self, system: Any, width: float) -> None:
+        super().__init__(system, width)
+        self.heat, self.last = np.zeros(1), 0.0
+
+    def add(self, point: StatePoint, at: Evaluation) -> None:
+        super().add(point, at)
+        assert at.damping is not None
+        self.last = float(at.damping @ point.v)
+
+    def commit(self) -> None:
+        self.heat = self.heat + self.last
+
+    def state(self) -> dict[str, object]:
+        return {"heat": self.heat}
+
+    def restore(self, state: Any) -> None:
+        self.heat = state["heat"]
+
+
+def test_a_checkpoint_holds_what_a_term_declares(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A run that goes on from a checkpoint ends with the same history."""
+    terms: list[Counter] = []
+
+    def make(system: Any) -> Counter:
+        terms.append(Counter(system, WIDTH))
+        return terms[-1]
+
+    model = flying(monkeypatch, WIDTH)
+    monkeypatch.setitem(TERMS, "eddy brake", make)
+    model.steps = [ct.Dynamic(period=2.0, increments=8)]
+    whole = ct.solve(model, threads=1)
+    expected = terms[-1].heat.copy()
+    files = ct.JobFiles(tmp_path / "job", checkpoint_every=3)
+    ct.solve(model, observers=[files], threads=1)
+    rest = ct.resume(tmp_path / "job" / "job", threads=1)
+    assert np.array_equal(terms[-1].heat, expected)
+    assert np.array_equal(rest.frames[-1].U, whole.frames[-1].U)

@@ -10,7 +10,7 @@ an error of the integration in time.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -230,6 +230,8 @@ class Balance:
     inertia : Inertia
     account : Energies
     """
+
+    recomputed: ClassVar[frozenset[str]] = frozenset({"inertia"})
 
     def __init__(
         self, system: System, step: Dynamic, now: MotionState, inertia: Inertia, account: Energies

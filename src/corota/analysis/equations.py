@@ -8,7 +8,7 @@ elements, loads and supports, but no increments or iterations.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -55,6 +55,11 @@ class System(NumberedModel):
     solver : LinearSolver
     threads : int
     """
+
+    recomputed: ClassVar[frozenset[str]] = frozenset(
+        {"model", "blocks", "own_blocks", "own_numbers", "largest_linear_strain", "_spare"}
+        | {"communicator"}
+    )
 
     def __init__(self, model: Model, solver: LinearSolver, threads: int = 1) -> None:
         super().__init__(model, solver, threads)

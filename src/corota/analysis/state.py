@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -87,6 +87,8 @@ class State:
     resumption : Resumption or None
         The checkpoint from which the procedure continues.
     """
+
+    recomputed: ClassVar[frozenset[str]] = frozenset({"resumption", "recover"})
 
     u: Floats
     time: float = 0.0

@@ -1,9 +1,10 @@
 """The state of an analysis as a tree of plain values and arrays, and back into fresh objects.
 
-All data of an analysis between two increments are state, unless this module excludes them:
-attributes of :data:`DERIVED` are recomputed, the model is stored by reference, and code is not
-stored. An attribute that is added later is therefore part of every checkpoint automatically.
-Objects of the compiled core export and import their state as arrays.
+All data of an analysis between two increments are state, unless their class excludes them:
+attributes that it lists as `recomputed` (linear solvers, memory, clocks, caches) follow from
+others, the model is stored by reference, and code is not stored. An attribute that is added later
+is therefore part of every checkpoint automatically. Objects of the compiled core export and import
+their state as arrays; terms from outside the package declare theirs (:meth:`Term.state`).
 
 Arrays of the system that did not change since it was built are not stored: the tree holds their
 digest only, which identifies a system of another model.
@@ -24,27 +25,6 @@ from corota.errors import CorotaError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-#: Attributes that follow from others, by class: linear solvers, memory, clocks, caches.
-DERIVED: dict[str, frozenset[str]] = {
-    "Model": frozenset({"start"}),
-    "System": frozenset(
-        {"model", "blocks", "own_blocks", "own_numbers", "largest_linear_strain", "_spare"}
-        | {"communicator"}
-    ),
-    "SymmetricPattern": frozenset({"whole"}),
-    "Conditions": frozenset({"_known"}),
-    "LoadFactors": frozenset({"amplitudes", "names", "runs_on", "moves_on"}),
-    "SaddlePointSystem": frozenset({"_resolve", "_link"}),
-    "State": frozenset({"resumption", "recover"}),
-    "Balance": frozenset({"inertia"}),
-    "Approach": frozenset({"system", "part", "heavy"}),
-    "BranchTracer": frozenset({"report", "cut_back"}),
-}
-#: Attributes of new objects that must be there although they are not stored.
-BLANK: dict[str, dict[str, Any]] = {
-    "Model": {"start": None},
-    "SaddlePointSystem": {"_link": None, "_resolve": None},
-}
 #: Packages whose classes may be made from a tree.
 PACKAGES = ("corota.analysis.", "corota.model.", "corota.mesh", "corota.results.", "corota.errors")
 #: Modules of the model whose objects are results, not input.
@@ -82,8 +62,14 @@ def _is_code(value: Any) -> bool:
 
 
 def _attributes(value: Any) -> dict[str, Any]:
-    skip = DERIVED.get(type(value).__name__, frozenset())
+    skip = _recomputed(type(value))
     return {k: v for k, v in _parts(value).items() if k not in skip}
+
+
+def _recomputed(kind: type) -> frozenset[str]:
+    """Attributes that a class does not store."""
+    found: frozenset[str] = getattr(kind, "recomputed", frozenset())
+    return found
 
 
 def _parts(value: Any) -> dict[str, Any]:
@@ -180,6 +166,8 @@ class Writer:
         module = kind.__module__
         if module in ("corota._core", "builtins"):
             return {"code": True}
+        if not module.startswith(PACKAGES) and hasattr(value, "restore"):
+            return {"term": self.write(dict(value.state()), place)}
         if not module.startswith(PACKAGES):
             raise Unstorable(
                 f"{place}: a {module}.{kind.__name__} cannot be stored in a checkpoint"
@@ -313,6 +301,11 @@ class Reader:
             except (ValueError, TypeError) as error:
                 raise UnsuitableState(str(error)) from None
             return fresh
+        if "term" in tree:
+            if not hasattr(fresh, "restore"):
+                raise UnsuitableState("a user-defined term is missing")
+            fresh.restore(self._value(tree["term"]))
+            return fresh
         if "sparse" in tree:
             import scipy.sparse
 
@@ -343,9 +336,8 @@ class Reader:
         kind = _class(tree["class"])
         own = fresh if type(fresh) is kind else kind.__new__(kind)
         self._keep(tree["n"], own)
-        blank = {} if own is fresh else BLANK.get(kind.__name__, {})
-        for name, value in blank.items():
-            object.__setattr__(own, name, value)
+        for name in () if own is fresh else _recomputed(kind):
+            object.__setattr__(own, name, None)
         for name, part in tree["parts"].items():
             old = _parts(own).get(name)
             value = self._value(part, old)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 
 import numpy as np
 
@@ -128,6 +128,8 @@ class Model(Loading, LineSections, InitialFields, Stages):
     unit_system : Units
         Names of the units, see :meth:`units`; empty if not given.
     """
+
+    recomputed: ClassVar[frozenset[str]] = frozenset({"start"})
 
     def __init__(self, mesh: Mesh, name: str = "model") -> None:
         self.mesh = mesh

@@ -11,7 +11,7 @@ What all processes compute, such as point masses, is added by one of them.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -43,6 +43,8 @@ class SymmetricPattern:
     communicator : Communicator, optional
         Processes whose values add up to the matrix.
     """
+
+    recomputed: ClassVar[frozenset[str]] = frozenset({"whole"})
 
     #: One process has the whole matrix.
     communicator: Communicator = ALONE

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -86,6 +86,8 @@ class SaddlePointSystem:
     kept : int
         The first of these belong to constraints that are never dropped in favor of others: ties.
     """
+
+    recomputed: ClassVar[frozenset[str]] = frozenset({"_resolve", "_link"})
 
     #: Processes whose values add up to the matrix.
     communicator: Communicator = ALONE

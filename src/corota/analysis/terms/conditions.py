@@ -12,7 +12,7 @@ over the step.
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -91,6 +91,8 @@ class Conditions(Term):
     harmonic : Conditions or None
         Amplitudes of the harmonic steps so far, apart from the loads of the state.
     """
+
+    recomputed: ClassVar[frozenset[str]] = frozenset({"_known"})
 
     name = "loads"
 

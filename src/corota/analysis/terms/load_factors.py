@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -49,6 +49,8 @@ class LoadFactors:
     ModelError
         If an amplitude is none.
     """
+
+    recomputed: ClassVar[frozenset[str]] = frozenset({"amplitudes", "names", "runs_on", "moves_on"})
 
     def __init__(self, amplitudes: Mapping[str, Amplitude]) -> None:
         for name, table in amplitudes.items():

@@ -77,7 +77,8 @@ class TermOutput:
 class Term(Protocol):
     """A term of the equation.
 
-    Its committed state is in its attributes: a checkpoint holds them all.
+    Its committed state is in its attributes. A checkpoint holds them all for terms of the package,
+    and what :meth:`state` returns for terms from outside.
     """
 
     #: Name in messages.
@@ -125,6 +126,14 @@ class Term(Protocol):
 
     def revert(self) -> None:
         """Go back to the committed state."""
+        return
+
+    def state(self) -> dict[str, object]:
+        """What a checkpoint holds of a user-defined term: arrays and plain values by name."""
+        return {}
+
+    def restore(self, state: dict[str, object]) -> None:
+        """Take back what :meth:`state` returned."""
         return
 
     def energies(self) -> dict[str, float]:

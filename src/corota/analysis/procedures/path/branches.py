@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -214,6 +214,8 @@ def _take(tracer: PathTracer, branch: Branch) -> Increment:
 
 class BranchTracer(PathTracer):
     """A path that takes another branch at a bifurcation point, where its plan says so."""
+
+    recomputed: ClassVar[frozenset[str]] = frozenset({"report", "cut_back"})
 
     def take_branch(self, critical: Critical) -> Increment:
         """See :func:`switch`."""

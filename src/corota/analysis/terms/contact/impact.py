@@ -12,7 +12,7 @@ surfaces approach; the last one ends a ten-thousandth of an edge behind the firs
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -132,6 +132,8 @@ class Approach:
     limited : bool
         Whether it was shortened.
     """
+
+    recomputed: ClassVar[frozenset[str]] = frozenset({"system", "part", "heavy"})
 
     def __init__(self, system: System, massless: NDArray[np.bool_]) -> None:
         self.system = system

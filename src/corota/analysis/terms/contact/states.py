@@ -91,9 +91,9 @@ def columns(
 def held(
     problem: ContactProblem, at: Evaluation, states: States, right_sides: RightHandSides
 ) -> tuple[Floats, Floats, int, States]:
-    """Correction for states that constrain the bodies, with the fewest changes.
+    """Correction for states that constrain the bodies.
 
-    Where all nodes in contact with a body slip at once, it is unconstrained: some must stick.
+    Where all nodes in contact with a body slip at once, it is unconstrained: they must stick.
     """
     if not problem.holds:
         return *problem.solve(at, states, right_sides), states
@@ -101,7 +101,7 @@ def held(
     tries, stuck = [states], states
     if slipping:
         stuck = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
-        tries += [_least_stick(problem, at, states), stuck]
+        tries.append(stuck)
     reason: SingularError | None = None
     for tried in tries:
         try:
@@ -118,19 +118,6 @@ def held(
         return du, dp, negative, tried
     assert reason is not None
     return _close_some(problem, at, stuck, right_sides, reason)
-
-
-def _least_stick(problem: ContactProblem, at: Evaluation, states: States) -> States:
-    """States with the half that exceeds the friction least sticking again."""
-    out = []
-    for s, (pair, terms, (p, q)) in zip(states, problem.pairs(at.contact_state), strict=True):
-        slips = np.flatnonzero(s == SLIPPING)
-        shear, loaded = np.abs(pair.shear(terms, q))[slips], p[slips] > 0.0
-        over = np.where(loaded, shear / np.where(loaded, p[slips], 1.0), np.inf)
-        s = s.copy()
-        s[slips[np.lexsort((shear, over))[: (len(slips) + 1) // 2]]] = CLOSED
-        out.append(s)
-    return out
 
 
 def let_slip(
