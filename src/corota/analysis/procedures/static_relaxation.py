@@ -39,7 +39,7 @@ class Rung(NamedTuple):
 
 #: Tried in turn. Of 286 torture problems relaxation solves an increment in 26, the damped motion in
 #: 5 of the 8 in which relaxation alone fails.
-LADDER = (
+LADDER: tuple[Rung, ...] = (
     Rung(False, (1e-2, 3e-2, 0.1, 0.2, 0.3), (1e-3, 1e-2)),
     Rung(True, (1e-3, 1e-2), (1e-3, 1e-2)),
 )
