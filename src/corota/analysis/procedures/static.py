@@ -41,8 +41,6 @@ by_relaxation = lazy("corota.analysis.procedures.static_relaxation:by_relaxation
 
 #: Failed attempts with increasing negative pivots before a limit point is searched.
 STALLED = 3
-#: Attempt from which an increment is tried by relaxation before it is cut further.
-RESTS = 4
 #: Residual after a first iteration with the elastic tangent up to which an increment unloads.
 ELASTIC = 0.01
 #: Share of the increment that would have the allowed error of creep, and largest growth.
@@ -275,9 +273,8 @@ class StaticStepper(NewtonStepper):
             if self.step.at_bifurcation == "follow" and not self.step.fixed_increments:
                 self.path_took_over = self.go_along_path(switch=True)
             return None
-        early = control.attempt == RESTS and not end
-        if end or early:
-            relaxed = by_relaxation(self, early)
+        if end:
+            relaxed = by_relaxation(self)
             if isinstance(relaxed, Attempt):
                 return relaxed
             outcome.reason += relaxed

@@ -47,23 +47,22 @@ LADDER: tuple[Rung, ...] = (
 HALVINGS = 4
 
 
-def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
+def by_relaxation(stepper: StaticStepper) -> Attempt | str:
     """The increment by relaxation, where contact is driven by supports; or why it fails.
 
     With loads, the end of an equilibrium is a limit point, which the user has to
-    assess; only the first equilibrium is sought, near the start. While increments may still
-    be cut (`early`), a distant state is refused.
+    assess; only the first equilibrium is sought, near the start.
     """
     system, state, control = stepper.system, stepper.state, stepper.control
     first = stepper.loop.number == 1 and not control.number
     loaded = not stepper.may_relax()
-    if loaded and (early or not first or not system.joined):
+    if loaded and not (first and system.joined):
         return ""
     ladder = LADDER
-    if early or control.step.fixed_increments:
+    if control.step.fixed_increments:
         whole = (control.size / control.step.period,)
         ladder = tuple(Rung(rung.motion, whole, whole) for rung in LADDER)
-    if early or loaded:
+    if loaded:
         ladder = tuple(rung for rung in ladder if not rung.motion)
     tries = _Sizes(ladder, first)
     for fraction, motion in tries:
@@ -89,9 +88,6 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
             system.revert()
             tries.nothing_closed = untouched
             continue
-        if early and not contact.near(outcome.u):
-            system.revert()
-            return ""
         if first:
             state.notes.append(
                 f"step time {target:.6g}: at the start the bodies are supported by contact "
