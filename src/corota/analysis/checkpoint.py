@@ -109,7 +109,7 @@ class Analysis(Protocol):
     as_built: dict[str, Any]
     communicator: Communicator
 
-    def known(self) -> dict[str, Any]:
+    def known(self) -> dict[str, object]:
         """Objects stored by reference in checkpoints."""
         ...
 
@@ -125,7 +125,7 @@ class Resumption:
     analysis: Analysis
     checkpoint: Checkpoint
     built: dict[str, Any]
-    known: dict[str, Any] = field(init=False)
+    known: dict[str, object] = field(init=False)
 
     def __post_init__(self) -> None:
         self.known = self.analysis.known()
@@ -142,7 +142,7 @@ class Resumption:
         )
 
 
-def root(analysis: Analysis, state: State) -> dict[str, Any]:
+def root(analysis: Analysis, state: State) -> dict[str, object]:
     """What a checkpoint holds."""
     return {
         "system": analysis.system,

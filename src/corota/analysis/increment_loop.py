@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from corota.analysis.increments import Increments
 from corota.errors import ConvergenceError, Interrupted
@@ -92,7 +92,7 @@ class Stepper(Protocol):
         """
         ...
 
-    def memory(self) -> dict[str, Any]:
+    def memory(self) -> dict[str, object]:
         """State of the stepper beside the committed state, by name."""
         ...
 
@@ -273,7 +273,7 @@ class NewtonStepper(ABC):
         """Commit an increment."""
 
     @abstractmethod
-    def memory(self) -> dict[str, Any]:
+    def memory(self) -> dict[str, object]:
         """See :class:`Stepper`."""
 
     @property

@@ -378,9 +378,9 @@ class Analysis:
             f"local_strain='linear'. {ADVICE}"
         ]
 
-    def known(self) -> dict[str, Any]:
+    def known(self) -> dict[str, object]:
         """Objects stored by reference in checkpoints."""
-        found: dict[str, Any] = {f"steps/{i}": step for i, step in enumerate(self.steps)}
+        found: dict[str, object] = {f"steps/{i}": step for i, step in enumerate(self.steps)}
         found |= {"model": self.model, "observers": self.observers}
         system = self.system
         found |= {"constraints": system.constraints, "pattern": system.pattern}

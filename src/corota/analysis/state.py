@@ -117,7 +117,7 @@ class State:
         """Kind of the loop that a checkpoint restores; empty for none."""
         return "" if self.resumption is None else self.resumption.kind
 
-    def resume(self, kind: str, **fresh: Any) -> dict[str, Any]:
+    def resume(self, kind: str, **fresh: object) -> dict[str, Any]:
         """Restore the checkpoint; the state of a procedure goes into `fresh` objects.
 
         Returns

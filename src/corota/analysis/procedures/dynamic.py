@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import warnings
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -155,7 +155,7 @@ class DynamicStepper(NewtonStepper):
         counts = ~system.by_node(massless.astype(float))[:, :2].any(axis=1)
         return known, there & moves, there & counts
 
-    def memory(self) -> dict[str, Any]:
+    def memory(self) -> dict[str, object]:
         """What a checkpoint holds beside the committed state."""
         return {
             "control": self.control,

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -256,7 +256,7 @@ class ExplicitStepper:
             )
         return min(SAFETY * stable, step.largest_increment)
 
-    def memory(self) -> dict[str, Any]:
+    def memory(self) -> dict[str, object]:
         """What a checkpoint holds beside the committed state."""
         return {name: getattr(self, name) for name in MEMORY}
 

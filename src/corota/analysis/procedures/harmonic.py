@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -120,7 +120,7 @@ class HarmonicStepper:
         """Progress of the step in words."""
         return f"frequency {self.frequencies[self.taken - 1]:g}"
 
-    def memory(self) -> dict[str, Any]:
+    def memory(self) -> dict[str, object]:
         """Nothing: harmonic steps are not resumed."""
         return {}
 

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -110,7 +110,7 @@ class ModalStepper:
         """Progress of the step in words."""
         return f"step time {self.taken * self.dt:g} of {self.step.period:g}"
 
-    def memory(self) -> dict[str, Any]:
+    def memory(self) -> dict[str, object]:
         """Nothing: modal steps are not resumed."""
         return {}
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -121,7 +121,7 @@ class StaticStepper(NewtonStepper):
         loop = self.state.resume(self.kind, control=self.control)
         self.rates, self.moved = (loop["first"], loop["rate"]), loop["moved"]
 
-    def memory(self) -> dict[str, Any]:
+    def memory(self) -> dict[str, object]:
         """What a checkpoint holds beside the committed state."""
         first, rate = self.rates
         return {"control": self.control, "first": first, "rate": rate, "moved": self.moved}

@@ -179,7 +179,7 @@ class PathStepper:
         self.begin, self.arc = loop["begin"], loop["arc"]
         self.found = loop["found"]
 
-    def memory(self) -> dict[str, Any]:
+    def memory(self) -> dict[str, object]:
         """What a checkpoint holds beside the committed state."""
         return {
             "along": self.along,
