@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
+    Ints = NDArray[np.int64]
 
 #: Numbers of an extreme in result files: value, index of the cell, point from 0, position.
 WIDTH = 5
@@ -167,12 +168,16 @@ def extremes(results: ResultSource, name: str, index: int, at: str) -> Extremes:
     row = row_of(frame, name)
     if row is None:
         raise no_points(name)
-    labels = results.mesh.cell_labels
+    return Extremes(name, "points", *extremes_of_row(row, results.mesh.cell_labels))
+
+
+def extremes_of_row(row: Floats, labels: Ints) -> tuple[Extreme, Extreme]:
+    """Smallest and largest value of a row of :func:`row_of`; `labels`: of the cells."""
     low, high = (
         Extreme(value, x, y, element=int(labels[int(cell)]), point=int(point) + 1)
         for value, cell, point, x, y in (row[:WIDTH].tolist(), row[WIDTH:].tolist())
     )
-    return Extremes(name, "points", low, high)
+    return low, high
 
 
 def no_points(name: str) -> InputError:
@@ -219,6 +224,7 @@ __all__ = [
     "Extreme",
     "Extremes",
     "extremes",
+    "extremes_of_row",
     "no_points",
     "places_of",
     "row_of",

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from corota.results.extremes import Extreme
     from corota.results.source import ResultSource
 
     Floats = NDArray[np.float64]
@@ -45,6 +46,9 @@ class History(Brief, NDArrayOperatorsMixin):
     values : ndarray, shape (n_frames,)
     results : Results
         Source of the history; gives the other axis of a plot.
+    places : tuple of (Extreme or None)
+        Node, or element and point, and current position of the value of each increment, where
+        ``combine`` picks it from one place; empty for sums, means and scalars.
 
     Examples
     --------
@@ -60,6 +64,7 @@ class History(Brief, NDArrayOperatorsMixin):
     name: str
     values: Floats
     results: ResultSource
+    places: tuple[Extreme | None, ...] = ()
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats:
         return np.array(self.values, dtype=dtype)

@@ -11,7 +11,7 @@ from corota.errors import InputError
 from corota.mesh.geometric import is_selection
 from corota.mesh.selection import names
 from corota.names import choose
-from corota.results.extremes import WIDTH, no_points, row_of
+from corota.results.extremes import Extreme, extremes_of_row, no_points, row_of
 from corota.results.history import History
 from corota.results.measures import MEASURES, stage_measure
 from corota.results.table import NODAL, TABLE
@@ -24,7 +24,7 @@ from corota.results.variables import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -34,7 +34,13 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 #: Reducers over the nodes.
-REDUCERS = ("auto", "sum", "mean", "max", "min", "size")
+REDUCERS = ("auto", "sum", "mean", "max", "min", "absmax")
+#: Which of the nodes a reducer takes.
+PICKED: dict[str, Callable[[Any], Any]] = {
+    "max": np.argmax,
+    "min": np.argmin,
+    "absmax": lambda values: np.argmax(np.abs(values)),
+}
 #: Vectors of forces by the names of their sizes: several nodes have a resultant.
 RESULTANTS = {r.size[0]: r.frame for r in TABLE.values() if r.force and r.size[0]}
 #: Variables that several nodes have the sum of.
@@ -60,14 +66,21 @@ def history(
     if name in NODAL or not _at_points(results, at):
         nodes = None if at is None or _all_nodes(results, at) else results.mesh.node_indices(at)
         label = f"{name}{where}" if name in NODAL else f"{name}{where} (nodal)"
-        values = [_nodal(results, name, i, nodes, combine) for i in range(len(frames))]
-        return History(label.replace(" at nodes (nodal)", " (nodal)"), np.array(values), results)
+        found = [_nodal(results, name, i, nodes, combine) for i in range(len(frames))]
+        return _with_places(label.replace(" at nodes (nodal)", " (nodal)"), found, results)
     cells = None
     if at is not None:
         cells = np.zeros(results.mesh.n_cells, dtype=bool)
         cells[results.mesh.cell_indices(at)] = True
-    values = [_of_points(f, name, cells, combine) for f in frames]
-    return History(name + where, np.array(values), results)
+    found = [_of_points(results, f, name, cells, combine) for f in frames]
+    return _with_places(name + where, found, results)
+
+
+def _with_places(label: str, found: list[float | Extreme], results: ResultSource) -> History:
+    """A history, with the place of each value that is one of a place."""
+    places = tuple(f if isinstance(f, Extreme) else None for f in found)
+    values = [f.value if isinstance(f, Extreme) else f for f in found]
+    return History(label, np.array(values), results, places if any(places) else ())
 
 
 def _scalar(results: ResultSource, name: str, at: Any) -> str:
@@ -134,7 +147,9 @@ def _at_points(results: ResultSource, at: Any) -> bool:
     return name in mesh.cell_sets and name not in mesh.node_sets and name not in mesh.edge_sets
 
 
-def _of_points(frame: Frame, name: str, cells: Any, combine: str) -> float:
+def _of_points(
+    results: ResultSource, frame: Frame, name: str, cells: Any, combine: str
+) -> float | Extreme:
     """A variable at the points of a frame; not a number in frames without it."""
     if combine in ("sum", "mean"):
         parts = [
@@ -152,13 +167,15 @@ def _of_points(frame: Frame, name: str, cells: Any, combine: str) -> float:
         if known:
             return float("nan")
         raise no_points(name)
-    low, high = float(row[0]), float(row[WIDTH])
+    low, high = extremes_of_row(row, results.mesh.cell_labels)
     if combine == "min":
         return low
-    return high if combine == "max" or abs(high) >= abs(low) else low
+    return high if combine == "max" or abs(high.value) >= abs(low.value) else low
 
 
-def _nodal(results: ResultSource, name: str, index: int, at: Ints | None, combine: str) -> float:
+def _nodal(
+    results: ResultSource, name: str, index: int, at: Ints | None, combine: str
+) -> float | Extreme:
     """A variable of a frame at nodes, or at all of them."""
     frame = results.frame(index)
     if name in NODAL and getattr(frame, NODAL[name][0]) is None:
@@ -171,10 +188,13 @@ def _nodal(results: ResultSource, name: str, index: int, at: Ints | None, combin
     if at is not None:
         values = values[at]
     if combine == "auto":
-        combine = "sum" if name in SUMMED else "mean" if at is not None else "size"
-    if combine == "size":
-        return float(values[np.argmax(np.abs(values))])
-    return float(getattr(values, combine)())
+        combine = "sum" if name in SUMMED else "mean" if at is not None else "absmax"
+    if combine not in PICKED:
+        return float(getattr(values, combine)())
+    row = int(PICKED[combine](values))
+    node = row if at is None else int(at[row])
+    x, y = (results.mesh.points[node] + frame.U[node]).tolist()
+    return Extreme(float(values[row]), x, y, node=int(results.mesh.node_labels[node]))
 
 
 def _place(at: Any) -> str:

@@ -242,7 +242,7 @@ class Results(Brief):
         self,
         name: str,
         at: str | int | Sequence[int] | None = None,
-        combine: Literal["auto", "sum", "mean", "max", "min", "size"] = "auto",
+        combine: Literal["auto", "sum", "mean", "max", "min", "absmax"] = "auto",
     ) -> History:
         """One number for each frame.
 
@@ -256,8 +256,9 @@ class Results(Brief):
             and other variables at points are taken at the quadrature points: of the whole model, or
             of an element set. At nodes they are nodal values (:meth:`nodal`), which the name of the
             history says; ``"nodes"`` are those of all nodes.
-        combine : {"auto", "sum", "mean", "max", "min", "size"}
-            Reducer: ``"size"`` is the value of the largest size, with its sign. ``"auto"``: forces
+        combine : {"auto", "sum", "mean", "max", "min", "absmax"}
+            Reducer: ``"absmax"`` is the value of the largest size, with its sign; of it, ``max``
+            and ``min`` the history has the ``places``. ``"auto"``: forces
             are summed (``RF`` and ``F`` are the size of the resultant), at nodes other variables
             are averaged; everywhere and in element sets the value of the largest size is taken.
 
