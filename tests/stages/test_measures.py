@@ -270,6 +270,17 @@ def test_names_without_a_stage(everything: ct.Results, through: ct.Results) -> N
         bare.history("travel", at="apex")
 
 
+def test_a_near_name_of_a_measure_is_suggested(through: ct.Results) -> None:
+    with pytest.raises(ct.InputError, match=r"measures of stages: .*snap load"):
+        through.history("snap force")
+
+
+def test_scalars_with_blanks_and_colons_are_measures(through: ct.Results) -> None:
+    (name,) = [s for s in through.scalar_names() if s.endswith(": snap load")]
+    for text in (f"last({name})", "last(snap load)", f"last('{name}')"):
+        assert Measure(text)(through) == last(through, "snap load")
+
+
 def test_axes_of_curves_have_names_with_blanks(through: ct.Results, tmp_path: Path) -> None:
     figure = through.history("load").plot(against=through.history("travel"))
     assert figure.axes[0].get_xlabel().startswith("apex: travel")

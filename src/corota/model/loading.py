@@ -13,10 +13,13 @@ from corota.mesh import selection
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, Force, Temperature, selected
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     from corota.model.loads import Load
 
+    Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
 
@@ -394,18 +397,41 @@ class Loading:
         self.loads.append(BodyForce(where, "centrifugal", value, amplitude, every=every))
 
     def temperature(
-        self, value: ArrayLike, nodes: str | ArrayLike = "", amplitude: str = ""
+        self,
+        value: ArrayLike | Callable[[Floats, Floats], ArrayLike],
+        nodes: str | ArrayLike = "",
+        amplitude: str = "",
     ) -> None:
         """Set the temperature of nodes; materials with an ``expansion`` expand.
 
         Parameters
         ----------
-        value : float or array_like
-            One temperature, or one for each node, at the end of the step.
+        value : float, array_like or callable
+            One temperature, or one for each node, at the end of the step. Of a model also a
+            function of the arrays x and y, such as ``lambda x, y: 20.0 + 3.0 * y`` or, of a table,
+            SciPy's ``LinearNDInterpolator(points, values)``.
         nodes : str or array_like of int
             Node, edge or cell set ("" for all), node indices, or a mask of nodes.
         amplitude : str
             Name in ``Model.amplitudes``; empty: a ramp in static steps.
+
+        Raises
+        ------
+        InputError
+            If a function is given to a step, or its values are not finite.
         """
         where = "" if isinstance(nodes, str) and not nodes else self._nodes(nodes)
+        if callable(value):
+            mesh = getattr(self, "mesh", None)
+            if mesh is None:
+                raise InputError(
+                    "a step has no mesh: give the temperatures of its nodes, "
+                    "function(*mesh.points.T)"
+                )
+            points = (
+                mesh.points
+                if isinstance(where, str) and not where
+                else (mesh.points[mesh.node_indices(where)])
+            )
+            value = np.broadcast_to(value(*points.T), len(points))
         self.loads.append(Temperature(where, value, amplitude))  # type: ignore[arg-type]

@@ -10,7 +10,7 @@ import numpy as np
 from corota.errors import InputError
 from corota.mesh.geometric import is_selection
 from corota.mesh.selection import names
-from corota.names import choose
+from corota.names import choose, listed
 from corota.results.extremes import Extreme, extremes_of_row, no_points, row_of
 from corota.results.history import History
 from corota.results.measures import MEASURES, stage_measure
@@ -126,7 +126,12 @@ def variable_name(results: ResultSource, name: str) -> str:
         return match_name(name, valid)
     except InputError as error:
         scalars = [key for key in results.scalar_names() if not stage_measure(key)]
-        raise InputError(f"{error.message}; of the whole: {', '.join(scalars)}") from None
+        measures = ""
+        if len(scalars) < len(results.scalar_names()):
+            words = set(name.lower().split())
+            near = [m for m in MEASURES if words & set(m.split())] or list(MEASURES)
+            measures = f"; measures of stages: {listed(near)}"
+        raise InputError(f"{error.message}; of the whole: {', '.join(scalars)}{measures}") from None
 
 
 def _all_nodes(results: ResultSource, at: Any) -> bool:

@@ -152,8 +152,10 @@ def _quoted(text: str) -> str:
     --------
     >>> _quoted("max(load factor) / last(MISES)"), _quoted("last('a b@c')")
     ("max('load factor') / last(MISES)", "last('a b@c')")
+    >>> _quoted("last(hub: snap load)")
+    "last('hub: snap load')"
     """
-    words = r"""("[^"]*"|'[^']*')|([A-Za-z_]\w*(?:[ \t]+\w+)+)"""
+    words = r"""("[^"]*"|'[^']*')|([A-Za-z_]\w*(?::?[ \t]+\w+)+)"""
     return re.sub(words, lambda m: m[1] or repr(" ".join(m[2].split())), text)
 
 
