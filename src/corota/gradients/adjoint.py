@@ -26,7 +26,7 @@ from corota.errors import UnsupportedError
 from corota.gradients import friction
 from corota.gradients.differences import derivative
 from corota.gradients.measures import SpecialMeasure
-from corota.gradients.surfaces import evaluate
+from corota.gradients.surfaces import evaluate, slide
 from corota.gradients.surfaces import solve as solve_with_surfaces
 from corota.model.dofs import dof_index
 from corota.model.paths import DisplacementControl
@@ -251,7 +251,6 @@ def _sliding(
 
 def _return_to(trajectory: Trajectory, points: Sequence[Point], k: int) -> None:
     """Let slips begin where increment k begins."""
-    term = trajectory.system.contact_term
     if k > 0:
         before = points[k - 1]
         assert before.increment.surfaces is not None
@@ -263,9 +262,7 @@ def _return_to(trajectory: Trajectory, points: Sequence[Point], k: int) -> None:
         )
         trajectory.slide(before.u, before.increment)
         return
-    term.u = np.zeros(trajectory.system.n_dofs)
-    for pair in term.pairs:
-        pair.keep_closed(np.zeros(pair.n, np.int8))
+    slide(trajectory.system)
 
 
 def _special(

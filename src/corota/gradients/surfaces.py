@@ -193,6 +193,18 @@ def add_forces(
     return residuals(system, state, surfaces)
 
 
+def slide(system: System, u: Floats | None = None, surfaces: Surfaces | None = None) -> None:
+    """Let slips begin at a displacement, or where nothing has moved and all surfaces are open."""
+    term = system.contact_term
+    term.u = np.zeros(system.n_dofs) if u is None else u.copy()
+    for k, pair in enumerate(term.pairs):
+        if surfaces is None:
+            pair.keep_closed(np.zeros(pair.n, np.int8))
+            continue
+        pair.core.commit()
+        pair.keep_closed(surfaces.states[k])
+
+
 def residuals(system: System, state: ContactState, surfaces: Surfaces) -> Floats:
     """Gaps and slips of closed constraints, tractions of slipping ones less those of friction."""
     term = system.contact_term
@@ -231,4 +243,13 @@ def solve(
     return z, y
 
 
-__all__ = ["Surfaces", "add_forces", "evaluate", "find", "refuse_surfaces", "residuals", "solve"]
+__all__ = [
+    "Surfaces",
+    "add_forces",
+    "evaluate",
+    "find",
+    "refuse_surfaces",
+    "residuals",
+    "slide",
+    "solve",
+]

@@ -17,7 +17,7 @@ from corota.analysis.equations import System
 from corota.analysis.linear.solvers import make_solver
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.errors import InputError, UnsupportedError
-from corota.gradients.surfaces import Surfaces, add_forces, find, refuse_surfaces
+from corota.gradients.surfaces import Surfaces, add_forces, find, refuse_surfaces, slide
 from corota.model.user_material import UserMaterial
 
 if TYPE_CHECKING:
@@ -236,12 +236,8 @@ class Trajectory:
 
     def slide(self, u: Floats, increment: Increment) -> None:
         """Let slips of the next increment begin at a displacement."""
-        term, surfaces = self.system.contact_term, increment.surfaces
-        assert surfaces is not None
-        term.u = u.copy()
-        for pair, state in zip(term.pairs, surfaces.states, strict=True):
-            pair.core.commit()
-            pair.keep_closed(state)
+        assert increment.surfaces is not None
+        slide(self.system, u, increment.surfaces)
 
     def forget_modes(self) -> None:
         """Let the iterations for internal modes of elements begin at zero.
