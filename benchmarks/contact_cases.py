@@ -5,7 +5,7 @@ names as arguments those whose name holds one of them (``drop``, ``"ring Q8R"``)
 for each and a table by family. ``--quick`` takes three of each family. ``--keep FILE`` keeps a line
 of JSON for each and does not run again what is there, so that long campaigns go in parts;
 ``--write`` puts the tables of all that was run into docs/contact.md and, for the drop tests, into
-docs/impact.md. The exit status is 1 where one does not end as it must.
+docs/measured.md. The exit status is 1 where one does not end as it must.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -192,7 +192,7 @@ def write(rows: list[dict[str, Any]]) -> None:
     command = f"`python -m benchmarks.contact_cases --write`, {machine()}"
     write_between(DOCS / "contact.md", "cases", f"{command}\n\n{summary(rows)}")
     if any(r["name"].startswith("drop ") for r in rows):
-        write_between(DOCS / "impact.md", "drops", f"{command}\n\n{drops(rows)}")
+        write_between(DOCS / "measured.md", "drops", f"{command}\n\n{drops(rows)}")
 
 
 def _one(job: tuple[Case, int]) -> dict[str, Any]:

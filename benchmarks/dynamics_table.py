@@ -1,4 +1,4 @@
-"""What mass and scheme cost and give: the tables of docs/dynamics.md.
+"""What mass and scheme cost and give: the tables of docs/measured.md.
 
 Three motions (a cantilever under a load that comes on smoothly, a free spinning rod, a flexible
 pendulum), four elements, three masses, two meshes and two time steps with the energy-momentum
@@ -7,7 +7,7 @@ square over time, relative to that of its displacement); iterations an increment
 drift of energy balance and angular momentum; time. Then the drift of every scheme on the free rod.
 
 ``--quick`` takes the coarse mesh only; ``--write`` puts the tables between the marks in
-docs/dynamics.md.
+docs/measured.md.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -34,7 +34,7 @@ CASES = {
     "pendulum": (1.0, 0.05, 2e4, 1.5, 60),
 }
 MESHES = (8, 16)
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "dynamics.md"
+PAGE = Path(__file__).resolve().parent.parent / "docs" / "measured.md"
 
 
 def model(case: str, element: str, cells: int) -> ct.Model:
@@ -172,7 +172,7 @@ def main() -> None:
     table = masses(MESHES[:1] if args.quick else MESHES)
     text = "\n".join([f"Measured on {machine()}.", "", *drift, "", *table])
     if args.write:
-        write_between(PAGE, "tables", text)
+        write_between(PAGE, "dynamics tables", text)
 
 
 if __name__ == "__main__":

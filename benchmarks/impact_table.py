@@ -1,4 +1,4 @@
-"""Impacts: schemes on an elastic bar, rings and bars that yield: the tables of docs/impact.md.
+"""Impacts: schemes on an elastic bar, rings and bars that yield: the tables of docs/measured.md.
 
 The bar (200 elements, increments of half the time a wave takes through one) with every implicit
 scheme, with the mass of the contact nodes redistributed and without; an elastic ring that hits the
@@ -7,7 +7,7 @@ that hit a wall at two speeds and yield, with four elements, consistent inertia 
 energy and momentum with automatic increments: rebound, energies, balance error, momentum
 along the wall, residual shape, iterations, time.
 
-``--quick`` runs coarser models; ``--write`` puts the tables between the marks in docs/impact.md
+``--quick`` runs coarser models; ``--write`` puts the tables between the marks in docs/measured.md
 and draws the picture there.
 """
 
@@ -24,7 +24,7 @@ from benchmarks.common import machine, write_between
 from corota.verification.impact_models import Budget, Flight, budget, fly, run_ring, strike
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "impact.md"
+PAGE = ROOT / "docs" / "measured.md"
 PICTURE = ROOT / "docs" / "images" / "impact.png"
 SCHEME_PICTURE = ROOT / "docs" / "images" / "impact-schemes.png"
 SCHEMES = ("newmark", "hht", "generalized_alpha", "energy_momentum")
@@ -38,13 +38,18 @@ def say(line: str) -> str:
     return line
 
 
+def named(scheme: str) -> str:
+    """A scheme in words, which may be broken in a narrow column."""
+    return {"energy_momentum": "energy-momentum"}.get(scheme, scheme.replace("_", " "))
+
+
 def schemes(cells: int) -> list[str]:
     """Table of schemes on the elastic bar."""
     lines = [
         f"Elastic bar, {cells} `Q4I`; figures relative to the exact value, except for contacts "
         "and iterations.",
         "",
-        "| scheme | mass of contact nodes | contacts | duration | rebound | energy | largest force "
+        "| scheme | mass | contacts | duration | rebound | energy | largest force "
         "| iterations |",
         "| --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
@@ -55,7 +60,7 @@ def schemes(cells: int) -> list[str]:
             hit = strike("Q4I", scheme, cells=cells, redistribute=redistribute)
             lines.append(
                 say(
-                    f"| {scheme} | {'redistributed' if redistribute else 'kept'} | {hit.contacts} "
+                    f"| {named(scheme)} | {'redistributed' if redistribute else 'kept'} | {hit.contacts} "
                     f"| {hit.duration:.4f} | {hit.rebound:.4f} | {hit.energy:.4f} "
                     f"| {hit.force:.2f} | {hit.iterations:.2f} |"
                 )
@@ -74,7 +79,7 @@ def budgets(around: int) -> tuple[list[str], dict[str, Budget]]:
         "1/500; momenta relative to the initial momentum normal to the wall, energies to the "
         "initial energy.",
         "",
-        "| hit | scheme | mass of contact nodes | normal momentum | tangential | gain less impulse "
+        "| hit | scheme | mass | normal momentum | tangential | gain less impulse "
         "| angular gain | less moment | travel | spin | vibration | friction | lost | contacts "
         "| largest force |",
         "| " + " | ".join(["---"] * 15) + " |",
@@ -103,7 +108,7 @@ def budgets(around: int) -> tuple[list[str], dict[str, Budget]]:
                 gained, rest = b.after - b.before, (b.after - b.before - b.impulse) / size
                 lines.append(
                     say(
-                        f"| {hit} | {scheme} | {'redistributed' if redistribute else 'kept'} "
+                        f"| {hit} | {named(scheme)} | {'redistributed' if redistribute else 'kept'} "
                         f"| {b.before[1] / size:+.3f} to {b.after[1] / size:+.4f} "
                         f"| {b.before[0] / size:.3f} to {abs(b.after[0]) / size:.4f} "
                         f"| {abs(rest[:2]).max():.0e} | {abs(gained[2]) / size:.4f} "
@@ -228,7 +233,7 @@ def picture(flight: Flight, path: Path) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="coarser models")
-    parser.add_argument("--write", action="store_true", help="write docs/impact.md")
+    parser.add_argument("--write", action="store_true", help="write docs/measured.md")
     args = parser.parse_args()
     begin = time.perf_counter()
     lines = schemes(50 if args.quick else 200)
@@ -238,7 +243,7 @@ def main() -> int:
     lines += ["", *table]
     if args.write:
         command = f"`python -m benchmarks impact_table --write`, {machine()}"
-        write_between(PAGE, "tables", "\n".join([command, "", *lines]))
+        write_between(PAGE, "impact tables", "\n".join([command, "", *lines]))
         picture(flights["Q4D 1.0"], PICTURE)
         compare(found, SCHEME_PICTURE)
     say(f"{time.perf_counter() - begin:.0f} s")

@@ -71,7 +71,7 @@ def element(name: str) -> str:
     """The element: node order, faces, integration points and dofs."""
     facts = elements.find(name)
     svg = Svg(
-        520,
+        548,
         290,
         f"Element {name}: {facts.n_nodes} nodes, {facts.dofs_per_node} dofs each, "
         f"{facts.n_points} integration points",
@@ -105,7 +105,7 @@ def element(name: str) -> str:
 
 
 def _legend(svg: Svg, name: str, facts: elements.Element) -> None:
-    x, y = 300.0, 60.0
+    x, y = 328.0, 60.0
     svg.text(x, y, name, anchor="start", size=18, bold=True)
     dofs = "x, y" + (", rotation" if facts.dofs_per_node == 3 else "")
     y += 34

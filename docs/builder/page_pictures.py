@@ -17,7 +17,7 @@ DOCS = Path(__file__).resolve().parents[1]
 FOLDER = DOCS / "images" / "howto"
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 #: Colors of a picture, and its largest width [pixels].
-COLORS, WIDTH = 64, 900
+COLORS, WIDTH = 160, 900
 
 
 def draw(name: str) -> list[Path]:

@@ -40,7 +40,7 @@ REFERENCE = {
     "Coupling StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",
     "Sweeps": "sweep sample grid Sweep seek Sought",
-    "Gradients": "gradient value_and_grad optimize",
+    "Gradients of a run": "gradient value_and_grad optimize",
     "Periodic cells": "PeriodicCell",
     "Selections": "near on_line on_circle inside",
     "Results": "Results BodyMotion Frame PointFields History CriticalPoint Modes",
@@ -56,6 +56,7 @@ LOOK = (
     ".bd-main .bd-content .bd-article-container{max-width:62rem}"
     ".bd-article table{font-size:.82rem}.bd-article :is(td,th){padding:.25rem .4rem}"
     ".bd-article table:has(th:nth-child(8)){font-size:.7rem}"
+    ".bd-article table:has(th:nth-child(14)) :is(td,th){padding:.2rem}"
     ".bd-header-article .ellipsis{white-space:normal}"
     ".sd-card-img-top{height:11rem;object-fit:contain;background:#fff;padding:.4rem}"
     ".bd-article figure{margin:1rem 0}"

@@ -436,6 +436,10 @@ U
             sums[float(words[-1])] = float(lines[i + 2].split()[0])
     assert np.allclose(times["displacements"][:3], [0.4, 0.8, 1.0])
     assert np.allclose(times["total"][:3], [0.4, 0.8, 1.0])
+    # A total has its column, and the nodes of TOTALS=ONLY have none.
+    heading = (tmp_path / "t.csv").read_text().splitlines()[0]
+    assert "RF1 left" in heading
+    assert "RF1 node 1" not in heading
     later = times["displacements"][3:]
     assert np.allclose(later[:2], [1.15, 1.6])
     assert later[-1] == pytest.approx(3.0)

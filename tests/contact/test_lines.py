@@ -434,3 +434,22 @@ def test_lines_and_nodes_are_in_result_files_and_pictures(tmp_path, slave):
     ct.plots.status(back, path=tmp_path / "status.png")
     assert (tmp_path / "line.png").stat().st_size > 1000
     assert (tmp_path / "status.png").stat().st_size > 1000
+
+
+def test_a_falling_line_whose_nodes_are_all_slaves_is_named() -> None:
+    """The foot alone as the slave: the force of the wave, rho c A v; all nodes: mass over time."""
+    young, density, area, speed = 210e3, 7.85e-9, 300.0, 2000.0
+    wave = np.sqrt(young * density) * area * speed
+    mesh = ct.mesh.line([(0.0, 0.2), (0.0, 480.0)], n=6)
+    for slave, named in (("start", False), ("all", True)):
+        model = ct.Model(mesh)
+        material = ct.Elastic(E=young, rho=density)
+        model.beam("all", material=material, area=area, inertia=5e4, height=1e-3)
+        model.velocity(y=-speed)
+        model.fix("start", x=0.0, y=None)
+        model.contact(slave, ct.RigidCurve.line((-9.0, 0.0), (9.0, 0.0)), name="floor")
+        step = ct.Dynamic(period=2e-4, increments=20, scheme="energy_momentum")
+        results = ct.solve(model, step)
+        assert any("no other can take their mass" in note for note in results.notes) is named
+        if not named:
+            assert 0.9 * wave < results.history("floor: force y").max() < 1.6 * wave

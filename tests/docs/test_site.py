@@ -37,6 +37,8 @@ def test_every_public_name_is_in_the_reference(site: ModuleType) -> None:
     assert len(listed) == len(set(listed))
     modules = {name.split(".")[1] for name in site.MODULES}
     assert {*listed, *modules, "LOCAL_STRAINS"} == set(ct.__all__)
+    # A section named like a module would be written over by its page.
+    assert not modules & {title.lower().replace(" ", "-") for title in site.REFERENCE}
 
 
 def test_every_keyword_has_its_page() -> None:
@@ -95,6 +97,7 @@ def test_every_example_is_in_the_gallery_and_linked_with_its_topic() -> None:
     folder = DOCS.parent / "examples"
     scripts = [p.relative_to(folder).with_suffix("").as_posix() for p in thumbnails.scripts()]
     assert set(scripts) == set(gallery.ENTRIES)
+    assert set(script("example_runs").stored()) == set(scripts), "run docs/builder/example_runs.py"
     pages = gallery.pages()
     for path, entry in gallery.ENTRIES.items():
         page = gallery.page_name(path)

@@ -151,6 +151,34 @@ def test_move_scales_turns_and_shifts() -> None:
     assert area(found) == pytest.approx(8.0)
 
 
+def test_a_line_is_a_chain_of_its_sides() -> None:
+    hook = mesh.line([(0, 0), (0, 10), (5, 10)], n=[8, 4])
+    ends = hook.points[hook.cells[0].nodes]
+    assert np.abs(ends[:, 1] - ends[:, 0]).sum() == pytest.approx(15.0)
+    assert hook.points[hook.nodes_of("corner_1")].tolist() == [[0.0, 10.0]]
+    assert hook.points[hook.nodes_of("end")].tolist() == [[5.0, 10.0]]
+    closed = mesh.line([(0, 0), (4, 0), (4, 3), (0, 0)], n=2, name="loop")
+    assert (closed.n_nodes, closed.n_cells) == (6, 6)
+    assert list(closed.node_sets) == ["loop.corner_1", "loop.corner_2"]
+    assert list(closed.cell_sets) == ["loop"]
+    assert np.bincount(closed.cells[0].nodes.ravel()).tolist() == [2] * 6
+
+
+@pytest.mark.parametrize(
+    ("points", "n", "text"),
+    [
+        ([(0.0, 0.0)], 1, "two or more points"),
+        ([(0.0, 0.0), (1.0, 0.0), (1.0, 0.0)], 1, "points 1 and 2 of the line are the same"),
+        ([(0.0, 0.0), (np.nan, 0.0)], 1, "finite"),
+        ([(0.0, 0.0), (1.0, 0.0)], [2, 3], "needs one or 1 counts"),
+        ([(0.0, 0.0), (1.0, 0.0)], 0, "needs one or 1 counts"),
+    ],
+)
+def test_what_is_no_line_is_refused(points: list[tuple[float, float]], n: int, text: str) -> None:
+    with pytest.raises(InputError, match=text):
+        mesh.line(points, n)
+
+
 def test_nodes_of_a_set_of_any_sort() -> None:
     found = mesh.rectangle(2.0, 1.0, 2, 1)
     assert found.nodes_of("all").tolist() == [0, 1, 2, 3, 4, 5]

@@ -64,6 +64,29 @@ PICTURES = {
 }
 
 
+def test_a_stress_bar_names_the_values_at_points(results: ct.Results) -> None:
+    label = results.plot("MISES", path=None).axes[-1].get_xlabel().replace("\n", " ")
+    at = results.extremes("MISES")
+    assert f"(extrapolated; points {at.smallest.value:.5g} ... {at.largest.value:.5g})" in label
+    assert "points" not in results.plot("U1").axes[-1].get_xlabel()
+
+
+def test_a_rigid_body_is_drawn_with_its_parts() -> None:
+    mesh = ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1)
+    hub = ct.mesh.add_node(mesh, 12.0, 0.5, name="hub")
+    model = ct.Model(mesh)
+    model.section(element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+    model.fix("left")
+    model.rigid("right", hub)
+    model.force("hub", y=-0.1)
+    results = ct.solve(model, ct.Static(increments=1), threads=1)
+    place = mesh.points[hub] + results.frames[-1].U[hub]
+    drawn = results.plot("MISES").axes[0].collections
+    paths = [p.vertices for c in drawn if hasattr(c, "get_segments") for p in c.get_paths()]
+    assert any(np.allclose(path[-1], place) for path in paths if len(path) == 2)
+
+
+
 @pytest.mark.parametrize("picture", PICTURES)
 def test_no_text_leaves_the_picture(results: ct.Results, picture: str) -> None:
     assert not outside(PICTURES[picture](results))

@@ -99,6 +99,8 @@ def test_opens_on_the_largest_force_with_its_branches(browser: Browser, tmp_path
     assert labels[1] == f"{labels[0]}, back"
     known = [browser.run(f"{chart}.lines[{i}].y.map((v) => v !== null)") for i in range(2)]
     assert known == [[True] * 4 + [False] * 3, [False] * 3 + [True] * 4]
+    # The rows of the start of a step are no increments.
+    assert " 6 increments" in browser.run("document.getElementById('subtitle').textContent")
 
 
 def test_marks_limit_points_and_frames_the_tool(browser: Browser, tmp_path: Path) -> None:
@@ -106,6 +108,49 @@ def test_marks_limit_points_and_frames_the_tool(browser: Browser, tmp_path: Path
     browser.open(path.as_uri(), READY)
     texts = browser.run("window.corotaReport.charts.charts[0].points.map((p) => p.text)")
     assert texts.count("limit") == 2
+    # A click beside a mark shows its increment.
+    browser.run("window.corotaReport.scene.show(0)")
+    chart = "window.corotaReport.charts.charts[0]"
+    browser.run(f"{chart}.root.scrollIntoView()")
+    row, x, y = browser.run(
+        f"(() => {{ const {{ plot, points }} = {chart};"
+        " const box = plot.over.getBoundingClientRect(); const { row, x, y } = points[0];"
+        " return [row, box.left + plot.valToPos(x, 'x'), box.top + plot.valToPos(y, 'y')]; })()"
+    )
+    browser.click(x + 6, y + 6)
+    number = "window.corotaReport.scene.frame.increment"
+    wanted = f"window.corotaReport.history.column('increment')[{row}]"
+    assert browser.run(number) == browser.run(wanted)
+
+
+def test_no_two_lines_of_a_chart_look_the_same(browser: Browser, tmp_path: Path) -> None:
+    path = report_job(aborted(tmp_path))
+    browser.open(path.as_uri(), READY)
+    looks = browser.run(
+        "window.corotaReport.charts.charts.map(({ lines }) =>"
+        " lines.map(({ stroke, dash }) => `${stroke} ${dash ?? ''}`))"
+    )
+    assert all(len(set(chart)) == len(chart) for chart in looks)
+
+
+def test_prints_light_and_within_the_sheet(browser: Browser, tmp_path: Path) -> None:
+    path = report_job(aborted(tmp_path))
+    browser.prefer("dark")
+    browser.open(path.as_uri(), READY)
+    browser.run("dispatchEvent(new Event('beforeprint'))")
+    dark = {"name": "prefers-color-scheme", "value": "dark"}
+    browser.send("Emulation.setEmulatedMedia", media="print", features=[dark])
+    browser.resize(690, 980)
+    try:
+        assert browser.run("document.documentElement.dataset.shade") == "light"
+        assert browser.run("document.documentElement.scrollWidth") <= 690
+        assert not browser.run("document.getElementById('play').checkVisibility()")
+        browser.run("dispatchEvent(new Event('afterprint'))")
+        assert browser.run("document.documentElement.dataset.shade") == "dark"
+    finally:
+        browser.send("Emulation.setEmulatedMedia", media="")
+        browser.resize(1400, 1000)
+        browser.prefer("light")
 
 
 def test_a_drop_opens_with_its_contact_force(browser: Browser, tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from corota.mesh.change import merge, move, renumber, to_quadratic, to_triangles
     from corota.mesh.data import Cells, Mesh
     from corota.mesh.files import read
-    from corota.mesh.generate import annulus, distort, mapped, rectangle
+    from corota.mesh.generate import annulus, distort, line, mapped, rectangle
     from corota.mesh.kinds import EDGES, N_NODES
     from corota.mesh.random_fields import random_field
 
@@ -29,6 +29,7 @@ _HOMES = {
     "Mesh": "data",
     "annulus": "generate",
     "distort": "generate",
+    "line": "generate",
     "mapped": "generate",
     "merge": "change",
     "move": "change",
@@ -49,6 +50,7 @@ __all__ = [
     "annulus",
     "assembly",
     "distort",
+    "line",
     "mapped",
     "merge",
     "move",

@@ -198,6 +198,68 @@ def annulus(
     return mesh
 
 
+def line(points: ArrayLike, n: int | Sequence[int] = 10, name: str = "") -> Mesh:
+    """Mesh a polyline with line cells, for beams, trusses and springs.
+
+    Parameters
+    ----------
+    points : array_like, shape (k, 2)
+        Its corners in order [length]; the last one may be the first one again.
+    n : int or sequence of int
+        Cells of each side, or of all sides.
+    name : str, optional
+        Of the line, to tell it from others that :func:`merge` joins with it: its cell set gets this
+        name in place of ``all``, its node sets ``NAME.start`` in place of ``start`` and so on.
+
+    Returns
+    -------
+    Mesh
+        Node sets ``start`` and ``end`` (not of a closed line) and ``corner_1``, ``corner_2``, ... of
+        the points between; the cell set ``all``.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two points, two in a row coincide, or `n` does not fit.
+
+    Examples
+    --------
+    >>> from corota import mesh
+    >>> hook = mesh.line([(0, 0), (0, 10), (5, 10)], n=[8, 4])
+    >>> hook.n_nodes, hook.n_cells, list(hook.node_sets)
+    (13, 12, ['start', 'end', 'corner_1'])
+    """
+    corners = np.asarray(points, dtype=np.float64)
+    if corners.ndim != 2 or corners.shape[1:] != (2,) or len(corners) < 2:
+        raise InputError(f"a line needs two or more points (x, y), not an array {corners.shape}")
+    sides = np.diff(corners, axis=0)
+    if not np.isfinite(corners).all():
+        raise InputError("the points of a line must be finite numbers")
+    if not (lengths := np.linalg.norm(sides, axis=1)).all():
+        first = int(np.argmin(lengths))
+        raise InputError(f"points {first} and {first + 1} of the line are the same")
+    counts = np.broadcast_to(np.asarray(n), len(sides)) if np.ndim(n) == 0 else np.asarray(n)
+    if counts.shape != (len(sides),) or counts.dtype.kind not in "iu" or counts.min() < 1:
+        raise InputError(f"a line of {len(sides)} sides needs one or {len(sides)} counts, not {n}")
+    steps = [
+        first + np.arange(count)[:, None] / count * side
+        for first, side, count in zip(corners, sides, counts.tolist(), strict=False)
+    ]
+    closed = len(corners) > 3 and bool((corners[0] == corners[-1]).all())
+    nodes = np.concatenate(steps if closed else [*steps, corners[-1:]])
+    chain = np.arange(int(counts.sum()) + 1) % len(nodes)
+    cells = Cells("line2", np.column_stack([chain[:-1], chain[1:]]), np.arange(1, len(chain)))
+    ends = np.cumsum(counts)[:-1]
+    named = {} if closed else {"start": [0], "end": [len(nodes) - 1]}
+    named |= {f"corner_{i}": [int(end)] for i, end in enumerate(ends, 1)}
+    return Mesh(
+        nodes,
+        [cells],
+        node_sets={f"{name}.{k}" if name else k: np.array(v) for k, v in named.items()},
+        cell_sets={name or "all": np.arange(len(chain) - 1)},
+    )
+
+
 def distort(mesh: Mesh, amount: float, seed: int = 0) -> Mesh:
     """Shift the corner nodes inside a mesh at random; the boundary does not move.
 

@@ -11,6 +11,7 @@ import numpy as np
 from corota.errors import InputError
 from corota.plots import palette
 from corota.plots.figure import INK, PALE, extent_size, figure_of, finish, label_axes, look
+from corota.plots.lines import draw_links
 from corota.plots.plastic import draw_boundary
 from corota.plots.rigid import draw_rigid, with_rigid
 from corota.plots.surface import Surface, edge_lines, outline, surface
@@ -219,13 +220,32 @@ def contour(
         if not per_cell and len(drawing.parts) and not len(drawing.lines[0]):
             found = results.extremes(name, frame, at="nodes")
             shown = found.smallest.value, found.largest.value
-        more = "; black line: boundary of the flow" if flows else ""
+        points = "" if per_cell else point_range(results, name, frame)
+        more = points + ("; black line: boundary of the flow" if flows else "")
         label_bar(bar, name, per_cell, shown, results.model.unit_system, more)
         pad = 0.04 * float((high - low).max())
         ax.set_xlim(low[0] - pad, high[0] + pad)
         ax.set_ylim(low[1] - pad, high[1] + pad)
         ax.set_title(title if title is not None else frame_title(results, frame, scale), loc="left")
         return finish(figure, path, dpi)
+
+
+def without_rounding(low: float, high: float) -> tuple[float, float]:
+    """Limits of which one that is small beside the other is zero."""
+    size = max(abs(low), abs(high))
+    return tuple(0.0 if abs(v) < 1e-6 * size else v for v in (low, high))  # type: ignore[return-value]
+
+
+def point_range(results: ResultSource, name: str, frame: int) -> str:
+    """Words with the extremes at the quadrature points, from which nodal values are extrapolated."""
+    if name in NODAL:
+        return ""
+    try:
+        found = results.extremes(name, frame, at="points")
+    except InputError:  # a file with nodal values only, or a variable of lines
+        return ""
+    low, high = without_rounding(found.smallest.value, found.largest.value)
+    return f" (extrapolated; points {low:.5g} ... {high:.5g})"
 
 
 def label_bar(
@@ -238,8 +258,7 @@ def label_bar(
     plain = name in NODAL or name in LINE_ONLY
     how = ", element averages" if per_cell else "" if plain else ", nodal"
     label = f"{name}: {meaning}{how}" if meaning else name + how
-    size = max(abs(v) for v in limits)
-    low, high = (0.0 if abs(v) < 1e-6 * size else v for v in limits)
+    low, high = without_rounding(*limits)
     # Below a lying bar the power of ten of its ticks has a row of its own.
     lying = bar.orientation == "horizontal"
     bar.set_label(f"{label}; {low:.5g} ... {high:.5g}{more}", labelpad=9.0 if lying else None)
@@ -331,6 +350,7 @@ def paint(
     ax.add_collection(
         LineCollection(outline(mesh, positions), colors=INK, linewidths=0.35 if slender else 0.8)
     )
+    draw_links(ax, results.model, positions)
     draw_rigid(ax, results.model, results.frame(frame), scale)
     ax.set_aspect("equal")
     label_axes(ax, results.model.unit_system)

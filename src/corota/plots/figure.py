@@ -229,7 +229,8 @@ def fit_texts(figure: Any) -> None:
                 broken = _broken(whole.setdefault(text, before), text, space, renderer)
                 if broken != before:
                     text.set_text(broken)
-                    more += (broken.count("\n") - before.count("\n")) * (text is title)
+                    below = text is ax.xaxis.label and hasattr(ax, "_colorbar")
+                    more += (broken.count("\n") - before.count("\n")) * (text is title or below)
         if more > 0:  # the picture grows by the lines, lest the axes shrink
             inches = figure.get_size_inches()
             line = 1.25 * figure.axes[0]._left_title.get_fontsize() / 72.0

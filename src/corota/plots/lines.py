@@ -115,15 +115,11 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
         where = mass.nodes
         nodes = mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
         ax.plot(*mesh.points[nodes].T, "o", markersize=7.0, color=INK, zorder=3)
-    links = []
+    draw_links(ax, subject, mesh.points)
     for constraint in subject.constraints:
         if isinstance(constraint, Coupling):
-            where = constraint.nodes
-            nodes = mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
-            hub = mesh.points[constraint.reference]
-            links += [np.stack([mesh.points[n], hub]) for n in nodes]
             ax.plot(
-                *hub,
+                *mesh.points[constraint.reference],
                 "D",
                 markersize=4.0,
                 color=LINK,
@@ -131,5 +127,16 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
                 zorder=3,
                 markeredgewidth=0.6,
             )
+
+
+def draw_links(ax: Any, subject: Model, points: Floats) -> None:
+    """Draw rigid bodies and couplings, with the nodes at `points`, as lines from their reference."""
+    from matplotlib.collections import LineCollection
+
+    links: list[Floats] = []
+    for constraint in subject.constraints:
+        if isinstance(constraint, Coupling):
+            nodes = subject.mesh.node_indices(constraint.nodes)
+            links += [points[[node, constraint.reference]] for node in nodes]
     if links:
         ax.add_collection(LineCollection(links, colors=LINK, linewidths=0.7, zorder=1.8))

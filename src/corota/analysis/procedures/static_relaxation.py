@@ -108,7 +108,10 @@ def by_relaxation(stepper: StaticStepper) -> Attempt | str:
     said = f"; {tried} from the last converged state found an equilibrium nearby"
     if sunk_corner(system):
         return said  # the message has the reason
-    return f"{said}: the bodies snap or fold; use Dynamic to follow that"
+    return (
+        f"{said}: the bodies snap or fold (Dynamic follows that), or supports press them into a "
+        "place that is too small for them"
+    )
 
 
 class _Sizes:

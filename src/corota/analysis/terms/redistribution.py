@@ -74,10 +74,23 @@ def set_moving_mass(system: Any, kind: str, massless: NDArray[np.bool_] | None) 
     ]
     said = [text for text, error in zip(what, errors, strict=True) if error > SMALL]
     if not said:
-        return ""
+        return _all_skin(system, massless)
     return (
         f"contact: the mass of contact nodes {' and '.join(said)}; take three elements or more "
         "through its thickness, elements with mid-side nodes, or redistribute=False"
+    )
+
+
+def _all_skin(system: Any, massless: NDArray[np.bool_]) -> str:
+    """A remark where elements consist of contact nodes alone: no other node can take their mass."""
+    mesh = system.model.mesh
+    count = sum(int(massless[cells.nodes].all(axis=1).sum()) for cells in mesh.cells)
+    if not count:
+        return ""
+    return (
+        f"contact: all nodes of {count} element{'s' * (count > 1)} are slave nodes, and no other can "
+        "take their mass: where they meet the other side the force grows as increments shrink, "
+        "while its impulse is right; name only what meets the other side as the slave"
     )
 
 

@@ -104,7 +104,8 @@ class Supports:
                 label = self.system.model.mesh.node_labels[at]
                 raise ModelError(
                     f"node {label} lies on the axis of an axisymmetric model, or moves a body "
-                    f"without deformation: its {list(DOFS)[dof]} is zero, not {item.value:g}",
+                    f"without deformation: its {list(DOFS)[dof]} is zero, not "
+                    f"{item.value:g}; an interference begins as an overlap, with start='ramp'",
                     item.where,
                 )
 

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 #: Scalars of a frame that always have a column.
 ALWAYS = ("iterations", "strain energy", "external work", "kinetic energy")
+#: Components of a reaction.
+FORCES = ("RF1", "RF2")
 #: Largest number of nodes of a print request that get a column each.
 FEW_NODES = 10
 
@@ -92,12 +94,14 @@ def requested_nodes(
         if output.kind != "node print" or not output.where:
             continue
         nodes = mesh.nodes_of(output.where)
-        if len(nodes) > FEW_NODES:
+        if output.totals != "no" and "RF" in (v.upper() for v in output.variables):
+            found += [(f"{part} {output.where}", part, output.where, "sum") for part in FORCES]
+        if len(nodes) > FEW_NODES or output.totals == "only":
             continue
         for node in nodes:
             label = int(mesh.node_labels[node])
             for name in (v.upper() for v in output.variables):
-                parts = {"U": ("U1", "U2"), "RF": ("RF1", "RF2")}.get(name, ())
+                parts = {"U": ("U1", "U2"), "RF": FORCES}.get(name, ())
                 at = np.array([node])
                 found += [(f"{part} node {label}", part, at, "auto") for part in parts]
     return list({column[0]: column for column in found}.values())

@@ -1,6 +1,6 @@
 // A chart: curves over any abscissa, of which a click finds the nearest point. Axes by uPlot.
 
-import { lineColor } from "./colors.js";
+import { lineColor, lineDash } from "./colors.js";
 import { el, format, ink } from "./dom.js";
 
 /** Curves that go back and forth: every point in its order, gaps where a number is missing. */
@@ -27,6 +27,9 @@ const padded = (u, low, high) => {
   const pad = high > low ? 0.04 * (high - low) : Math.abs(low) * 0.1 || 1;
   return [low - pad, high + pad];
 };
+
+/** Distance within which a click means a mark [pixels]. */
+const NEAR = 12;
 
 export class Chart {
   /**
@@ -75,8 +78,17 @@ export class Chart {
 
   build() {
     this.plot?.destroy();
-    // A branch has the color of the line before it, paler.
-    this.lines.forEach((line, i) => (line.stroke = line.branch ? `${lineColor(i - 1)}99` : lineColor(i)));
+    let next = 0;
+    this.lines.forEach((line, i) => {
+      if (line.branch) line.stroke = `${this.lines[i - 1].stroke}99`; // the line before it, paler
+      else if (line.quiet) line.stroke = ink("soft");
+      else if (line.as) line.stroke = this.lines.find(({ label }) => label === line.as).stroke;
+      else {
+        line.stroke = lineColor(next);
+        line.dash ??= lineDash(next);
+        next += 1;
+      }
+    });
     const second = this.lines.some((line) => line.second);
     const axis = (scale, label, side) => ({
       scale,
@@ -144,6 +156,7 @@ export class Chart {
           "button",
           {
             "aria-pressed": String(shown),
+            class: line.dash ? "dashed" : false,
             style: `--line: ${line.stroke}`,
             onclick: () => {
               if (shown) this.hidden.add(line.label);
@@ -186,7 +199,10 @@ export class Chart {
 
   #click(event) {
     const box = this.plot.over.getBoundingClientRect();
-    const found = this.#nearest(event.clientX - box.left, event.clientY - box.top, 1e9);
+    const [left, top] = [event.clientX - box.left, event.clientY - box.top];
+    const marked = (this.points ?? []).find(({ x, y }) => Math.hypot(this.plot.valToPos(x, "x") - left, this.plot.valToPos(y, "y") - top) < NEAR);
+    if (marked) return this.options.pick?.(marked.row);
+    const found = this.#nearest(left, top, 1e9);
     if (found?.line.rows) this.options.pick?.(found.line.rows[found.i]);
   }
 
@@ -203,6 +219,7 @@ export class Chart {
     ctx.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
     ctx.clip();
     const ratio = devicePixelRatio;
+    let free = -Infinity; // where the last label ends
     for (const { x, text } of this.marks ?? []) {
       const at = u.valToPos(x, "x", true);
       ctx.strokeStyle = ink("danger");
@@ -212,9 +229,11 @@ export class Chart {
       ctx.moveTo(at, u.bbox.top);
       ctx.lineTo(at, u.bbox.top + u.bbox.height);
       ctx.stroke();
-      if (text) {
+      ctx.font = `${10 * ratio}px system-ui, sans-serif`;
+      const end = at + 3 * ratio + ctx.measureText(text).width;
+      if (text && at > free && end < u.bbox.left + u.bbox.width) {
+        free = end + 6 * ratio;
         ctx.fillStyle = ink("danger");
-        ctx.font = `${10 * ratio}px system-ui, sans-serif`;
         ctx.fillText(text, at + 3 * ratio, u.bbox.top + 10 * ratio);
       }
     }

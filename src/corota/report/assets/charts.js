@@ -124,7 +124,7 @@ export class Charts {
       chart.show([...branches(vertical, xs, ys), ...this.#beside(vertical, horizontal)], {
         x: history.label(horizontal),
         y: history.label(vertical),
-        points: this.#notable(ys).map(({ row, text }) => ({ x: xs[row], y: ys[row], text })),
+        points: this.#notable(ys).map(({ row, text }) => ({ x: xs[row], y: ys[row], row, text })),
       });
     });
     for (const select of selects) select.addEventListener("change", () => this.again[0]());
@@ -133,7 +133,7 @@ export class Charts {
   /** The same columns of the other run, dashed; none where it does not have them. */
   #beside(vertical, horizontal) {
     const [x, y] = [horizontal, vertical].map((name) => this.other?.column(name));
-    return x && y ? [{ label: `${vertical}, ${this.other.facts.job}`, x, y, dash: [6, 4] }] : [];
+    return x && y ? [{ label: `${vertical}, ${this.other.facts.job}`, as: vertical, x, y, dash: [6, 4] }] : [];
   }
 
   /** What drives: the load factor where loads act, else the largest reaction of a support that moves. */
@@ -191,11 +191,12 @@ export class Charts {
       const time = history.column("time");
       const beside = names.filter(({ values, second }) => !values && !second).flatMap(({ name }) => this.#beside(name, "time"));
       chart.show(
-        [...names.map(({ name, label, second, values, dash }) => ({
+        [...names.map(({ name, label, second, quiet, values, dash }) => ({
           label: label ?? name,
           x: time,
           y: values ? values() : history.column(name),
           second,
+          quiet,
           dash,
           rows: this.#rows,
         })), ...beside],
@@ -212,7 +213,7 @@ export class Charts {
     const found = names.map((name) => ({ name }));
     if (found.length && history.column("energy balance error") && has("energy balance error")) {
       const values = () => this.#balance(found.slice(0, -1).map(({ name }) => name));
-      found.push({ name: "energy balance error", label: "balance error [%]", second: true, values, dash: [5, 4] });
+      found.push({ name: "energy balance error", label: "balance error [%]", second: true, quiet: true, values, dash: [5, 4] });
     }
     return found;
   }

@@ -25,6 +25,9 @@ export function lineColor(index) {
   return found[index % found.length];
 }
 
+/** Dashes of a line: a color that comes again is dotted. */
+export const lineDash = (index) => (index < LINES.light.length ? undefined : [2, 3]);
+
 const hex = (text, at) => [0, 2, 4].map((i) => parseInt(text.slice(at + i, at + i + 2), 16));
 
 /** 256 colors of a map, four bytes each. */

@@ -57,6 +57,11 @@ export class History {
     return found;
   }
 
+  /** Increments; the row of the start of a step is none. */
+  get incrementCount() {
+    return (this.column("increment") ?? []).filter((number) => number > 0).length;
+  }
+
   /** Cut-backs of the log; results in memory have no log, but the attempts of each increment. */
   get cutBackCount() {
     const attempts = this.column("attempts") ?? [];

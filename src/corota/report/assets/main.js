@@ -69,6 +69,17 @@ class Page {
       apply();
     });
     system.addEventListener("change", apply);
+    // Paper is white.
+    let screen = chosen;
+    addEventListener("beforeprint", () => {
+      screen = chosen;
+      chosen = "light";
+      apply();
+    });
+    addEventListener("afterprint", () => {
+      chosen = screen;
+      apply();
+    });
     apply();
   }
 
@@ -119,7 +130,7 @@ class Page {
     byId("message").textContent = end.message ?? "";
     const parts = [];
     if (model) parts.push(`${model.nNodes.toLocaleString("en")} nodes, ${model.nCells.toLocaleString("en")} elements`);
-    if (history.count) parts.push(`${history.count.toLocaleString("en")} increments`);
+    if (history.count) parts.push(`${history.incrementCount.toLocaleString("en")} increments`);
     if (history.iterationCount) parts.push(`${(history.iterationNumbers.at(-1) + 1).toLocaleString("en")} iterations`);
     if (history.cutBackCount) parts.push(`${history.cutBackCount} cut-backs`);
     if (end.elapsed) parts.push(`${format(end.elapsed, 3)} s`);

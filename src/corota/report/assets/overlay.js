@@ -77,6 +77,23 @@ export class Overlay {
     }
   }
 
+  /** Rigid bodies and couplings: lines from their reference nodes. */
+  couplings(model, positions) {
+    const { context, camera } = this;
+    const place = (node) => [camera.toX(positions[2 * node]), camera.toY(positions[2 * node + 1])];
+    for (const { reference, nodes } of model.description.couplings ?? []) {
+      this.#style(ink("link"), 0.8);
+      const [x, y] = place(reference);
+      context.beginPath();
+      for (const node of nodes) {
+        context.moveTo(x, y);
+        context.lineTo(...place(node));
+      }
+      context.stroke();
+      context.fillRect(x - 2.5, y - 2.5, 5, 5);
+    }
+  }
+
   /** Line elements, colored by the mean of their ends where values are given. */
   lines(cells, positions, values, range, bands, table) {
     const { context, camera } = this;
@@ -200,17 +217,7 @@ export class Overlay {
         }
       }
     }
-    for (const coupling of model.description.couplings ?? []) {
-      this.#style(ink("link"), 0.8);
-      const [hx, hy] = this.#place(model, coupling.reference);
-      this.context.beginPath();
-      for (const node of coupling.nodes) {
-        this.context.moveTo(hx, hy);
-        this.context.lineTo(...this.#place(model, node));
-      }
-      this.context.stroke();
-      this.context.fillRect(hx - 3.5, hy - 3.5, 7, 7);
-    }
+    this.couplings(model, model.points);
     for (const mass of model.description.masses ?? []) {
       this.#style(ink("ink"));
       for (const node of mass.nodes) this.#dot(...this.#place(model, node), 5);

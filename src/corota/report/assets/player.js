@@ -314,6 +314,7 @@ export class Player {
       overlay.chains(model.lineCells.map(({ first, last }) => [first, last]), model.points, ink("ghost"), 1, [4, 3]);
     }
     overlay.chains(model.surface.outline, positions, ink("outline"), 1.1);
+    overlay.couplings(model, nodes);
     overlay.rigid(model, scene.frame, scene.scale * scene.phase);
     overlay.lines(model.lineCells, nodes, values, range, bands, colors);
     const { RF, CPRESS } = scene.frame.arrays;

@@ -277,9 +277,11 @@ class ContactTerm(Term):
                     "ramp": "is removed over the first step",
                 }["keep" if adjusted and not moved[deepest] else item.start]
                 label = self.system.model.mesh.node_labels[pair.nodes[deepest]]
+                half = float(np.max(pair.slave.half, initial=0.0))
+                lines = f" (the surface is {half:.4g} away from the line)" if half else ""
                 self.notes.append(
                     f"contact pair {pair.name!r}: the surfaces overlap by up to "
-                    f"{-gap[deepest]:.4g} at node {label} at the start; this {how}"
+                    f"{-gap[deepest]:.4g} at node {label} at the start{lines}; this {how}"
                 )
             if adjusted:
                 within = seen & (gap <= item.adjust)
