@@ -49,8 +49,7 @@ def schemes(cells: int) -> list[str]:
         f"Elastic bar, {cells} `Q4I`; figures relative to the exact value, except for contacts "
         "and iterations.",
         "",
-        "| scheme | mass | contacts | duration | rebound | energy | largest force "
-        "| iterations |",
+        "| scheme | mass | contacts | duration | rebound | energy | largest force | iterations |",
         "| --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
     for line in lines:
@@ -60,7 +59,8 @@ def schemes(cells: int) -> list[str]:
             hit = strike("Q4I", scheme, cells=cells, redistribute=redistribute)
             lines.append(
                 say(
-                    f"| {named(scheme)} | {'redistributed' if redistribute else 'kept'} | {hit.contacts} "
+                    f"| {named(scheme)} | {'redistributed' if redistribute else 'kept'} "
+                    f"| {hit.contacts} "
                     f"| {hit.duration:.4f} | {hit.rebound:.4f} | {hit.energy:.4f} "
                     f"| {hit.force:.2f} | {hit.iterations:.2f} |"
                 )
@@ -108,7 +108,8 @@ def budgets(around: int) -> tuple[list[str], dict[str, Budget]]:
                 gained, rest = b.after - b.before, (b.after - b.before - b.impulse) / size
                 lines.append(
                     say(
-                        f"| {hit} | {named(scheme)} | {'redistributed' if redistribute else 'kept'} "
+                        f"| {hit} | {named(scheme)} "
+                        f"| {'redistributed' if redistribute else 'kept'} "
                         f"| {b.before[1] / size:+.3f} to {b.after[1] / size:+.4f} "
                         f"| {b.before[0] / size:.3f} to {abs(b.after[0]) / size:.4f} "
                         f"| {abs(rest[:2]).max():.0e} | {abs(gained[2]) / size:.4f} "

@@ -158,8 +158,8 @@ def pages() -> dict[str, str]:
     )
     toc = "\n".join(name.removesuffix(".md") for name in found)
     found["index.md"] = (
-        "# Gallery\n\nEach example is run by the tests; its page has its text, what it prints beside the "
-        "independent values, and its time. The pictures show the frame of the largest "
+        "# Gallery\n\nEach example is run by the tests; its page has its text, what it prints beside "
+        "the independent values, and its time. The pictures show the frame of the largest "
         "von Mises stress: pale is none, dark the largest.\n\n"
         + FILTER.format(buttons=buttons)
         + f"\n::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{cards}::::\n\n"
@@ -220,13 +220,15 @@ def page(path: str, entry: Entry) -> str:
     links = ", ".join(f"[{name.split('/')[-1].replace('_', ' ')}](../../{name}.md)"
                       for name in TOPICS[entry.topic])  # fmt: skip
     lines += [f"**{entry.topic}**: {links}", "", "```sh", f"python examples/{path}.py"]
-    run = example_runs.stored()[path]
+    run = example_runs.stored().get(path)
     decks = sorted(p.name for p in file.parent.glob("*.inp") if not p.stem.endswith("_mesh"))
     lines += [f"corota run examples/{file.parent.name}/{deck}" for deck in decks]
     if entry.model:
         lines += [f"corota demo {entry.model}"]
-    lines += ["```", "", f"It takes {run['seconds']:g} s of one core and prints:", ""]
-    lines += ["```text", *run["printed"], "```", ""]  # type: ignore[misc]
+    lines += ["```", ""]
+    if run:  # of a new example there is none yet
+        lines += [f"It takes {run['seconds']:g} s of one core and prints:", ""]
+        lines += ["```text", *run["printed"], "```", ""]  # type: ignore[misc]
     if entry.model:
         code = inspect.getsource(ct.examples.MODELS[entry.model])
         lines += [

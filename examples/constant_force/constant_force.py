@@ -82,7 +82,7 @@ def forces(x: np.ndarray, cells: int = 16) -> np.ndarray:
     return -np.asarray(results.history("RF2", at="right"))
 
 
-def main(arguments: list[str]) -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Optimize, print the forces before and after, and draw the shape."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("constant_force"))

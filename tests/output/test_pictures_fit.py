@@ -86,7 +86,6 @@ def test_a_rigid_body_is_drawn_with_its_parts() -> None:
     assert any(np.allclose(path[-1], place) for path in paths if len(path) == 2)
 
 
-
 @pytest.mark.parametrize("picture", PICTURES)
 def test_no_text_leaves_the_picture(results: ct.Results, picture: str) -> None:
     assert not outside(PICTURES[picture](results))

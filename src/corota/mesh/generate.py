@@ -214,8 +214,8 @@ def line(points: ArrayLike, n: int | Sequence[int] = 10, name: str = "") -> Mesh
     Returns
     -------
     Mesh
-        Node sets ``start`` and ``end`` (not of a closed line) and ``corner_1``, ``corner_2``, ... of
-        the points between; the cell set ``all``.
+        Node sets ``start`` and ``end`` (not of a closed line) and ``corner_1``, ``corner_2``, ...
+        of the points between; the cell set ``all``.
 
     Raises
     ------

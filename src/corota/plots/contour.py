@@ -237,7 +237,7 @@ def without_rounding(low: float, high: float) -> tuple[float, float]:
 
 
 def point_range(results: ResultSource, name: str, frame: int) -> str:
-    """Words with the extremes at the quadrature points, from which nodal values are extrapolated."""
+    """Words with the extremes at the quadrature points: nodal values are extrapolated from them."""
     if name in NODAL:
         return ""
     try:

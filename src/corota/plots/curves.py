@@ -106,4 +106,6 @@ def axis_label(name: str, units: Units | None = None) -> str:
     what = described(variable, named_units)
     if not what:
         return labeled(name, named_units)
+    # A place by its coordinates has all their digits in its name.
+    place = re.sub(r"\d+\.\d{4,}", lambda number: f"{float(number[0]):.4g}", place)
     return f"{variable}: {what}" + (f", at {place}" if place else "")

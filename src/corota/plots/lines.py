@@ -130,7 +130,7 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
 
 
 def draw_links(ax: Any, subject: Model, points: Floats) -> None:
-    """Draw rigid bodies and couplings, with the nodes at `points`, as lines from their reference."""
+    """Draw rigid bodies and couplings as lines from their reference, with the nodes at `points`."""
     from matplotlib.collections import LineCollection
 
     links: list[Floats] = []

@@ -88,8 +88,8 @@ def _all_skin(system: Any, massless: NDArray[np.bool_]) -> str:
     if not count:
         return ""
     return (
-        f"contact: all nodes of {count} element{'s' * (count > 1)} are slave nodes, and no other can "
-        "take their mass: where they meet the other side the force grows as increments shrink, "
+        f"contact: all nodes of {count} element{'s' * (count > 1)} are slave nodes, and no other "
+        "can take their mass: where they meet the other side the force grows as increments shrink, "
         "while its impulse is right; name only what meets the other side as the slave"
     )
 
