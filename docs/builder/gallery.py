@@ -158,8 +158,8 @@ def pages() -> dict[str, str]:
     )
     toc = "\n".join(name.removesuffix(".md") for name in found)
     found["index.md"] = (
-        "# Gallery\n\nEach example is run by the tests; its page has its text, what it prints beside "
-        "the independent values, and its time. The pictures show the frame of the largest "
+        "# Gallery\n\nEach example is run by the tests; its page has its text, what it prints "
+        "beside the independent values, and its time. The pictures show the frame of the largest "
         "von Mises stress: pale is none, dark the largest.\n\n"
         + FILTER.format(buttons=buttons)
         + f"\n::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{cards}::::\n\n"
