@@ -28,9 +28,10 @@ def leaf(name: str, thickness: float) -> ct.Model:
     steel = ct.Elastic(E=205e3, nu=0.3, name="spring steel")
     model.section(element="Q4I", material=steel, thickness=10.0)
     model.fix("left")
+    tip = ct.near(60.0, 0.5 * thickness)
     there, back = ct.Static(increments=8), ct.Static(increments=8)
-    there.fix("right", x=None, y=20.0)
-    back.fix("right", x=None, y=0.0)
+    there.fix(tip, x=None, y=10.0)
+    back.fix(tip, x=None, y=0.0)
     model.steps = [there, back]
     return model
 
