@@ -1,6 +1,6 @@
 """Every page of the site in a headless browser: `make check-site`.
 
-    python -m benchmarks.site_check [SITE] [--pictures DIR] [WORD ...]
+    python -m benchmarks.site_check [SITE] [--pictures DIR] [--sizes FILE] [WORD ...]
 
 Each page is opened at two widths. It must fit the width, hide no text, name every picture, have
 links that lead somewhere and no error on the console; the search must find the right page. ``WORD``
@@ -227,6 +227,13 @@ def check(site: Path, wanted: list[str], pictures: Path | None = None) -> list[s
     return faults
 
 
+def write_sizes(site: Path, path: Path) -> None:
+    """Write the size of each page [bytes] as CSV, the largest first, and the total."""
+    sizes = {page: (site / page).stat().st_size for page in pages_of(site)}
+    rows = [f"{page},{size}" for page, size in sorted(sizes.items(), key=lambda item: -item[1])]
+    path.write_text("\n".join(["page,bytes", *rows, f"all,{sum(sizes.values())}", ""]))
+
+
 def main() -> int:
     """Check the site; 1 where something is wrong."""
     parser = argparse.ArgumentParser(
@@ -235,7 +242,10 @@ def main() -> int:
     parser.add_argument("site", nargs="?", default="build/site", type=Path)
     parser.add_argument("words", nargs="*", help="pages whose path contains a word")
     parser.add_argument("--pictures", type=Path, help="write pictures of the pages there")
+    parser.add_argument("--sizes", type=Path, help="write the size of each page there as CSV")
     options = parser.parse_args()
+    if options.sizes is not None:
+        write_sizes(options.site, options.sizes)
     if options.pictures is not None:
         options.pictures.mkdir(parents=True, exist_ok=True)
     faults = check(options.site.resolve(), options.words, options.pictures)
