@@ -236,7 +236,7 @@ def without_rounding(low: float, high: float) -> tuple[float, float]:
     return tuple(0.0 if abs(v) < 1e-6 * size else v for v in (low, high))  # type: ignore[return-value]
 
 
-def point_range(results: ResultSource, name: str, frame: int) -> str:
+def point_range(results: Results, name: str, frame: int) -> str:
     """Words with the extremes at the quadrature points: nodal values are extrapolated from them."""
     if name in NODAL:
         return ""
