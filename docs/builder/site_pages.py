@@ -56,7 +56,8 @@ LOOK = (
     ".bd-main .bd-content .bd-article-container{max-width:62rem}"
     ".bd-article table{font-size:.82rem}.bd-article :is(td,th){padding:.25rem .4rem}"
     ".bd-article table:has(th:nth-child(8)){font-size:.7rem}"
-    ".bd-article table:has(th:nth-child(14)) :is(td,th){padding:.2rem}"
+    ".bd-article table:has(th:nth-child(14)){font-size:.6rem}"
+    ".bd-article table:has(th:nth-child(14)) :is(td,th){padding:.2rem .15rem}"
     ".bd-header-article .ellipsis{white-space:normal}"
     ".sd-card-img-top{height:11rem;object-fit:contain;background:#fff;padding:.4rem}"
     ".bd-article figure{margin:1rem 0}"
@@ -66,7 +67,7 @@ LOOK = (
     "color:var(--pst-color-background)}"
     # Code and tables wrap; nothing is hidden at the right.
     ".bd-article pre{white-space:pre-wrap;overflow-wrap:anywhere}"
-    ".bd-article td code{white-space:normal;overflow-wrap:anywhere}"
+    ".bd-article td :is(code,.pre){white-space:normal;overflow-wrap:anywhere}"
     ".prev-next-footer a,.prev-next-info,.prev-next-title{overflow:visible;white-space:normal}"
 )
 #: Modules of the reference.
