@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import csv
 import math
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import pytest
 
 import corota as ct
 from benchmarks.outline_drawings import DIALECTS, SHAPES
+from corota.cli import main
 from corota.errors import FileError, InputError
 from corota.outline import circle, outline, polyline
 
@@ -247,6 +249,15 @@ def test_the_gripper_of_the_page(tmp_path, monkeypatch, capsys):
     for name in ("travel", "safety factor", "stiffness"):
         assert f"{values[name]:.2f}" in section or f"{values[name]:.3f}" in section, name
     assert (tmp_path / "gripper.html").exists()
+
+    # The same as a deck: the pressure turns with the edge by 2e-4.
+    drawing = str(ct.examples.path("four_bar.dxf"))
+    (tmp_path / "job.inp").write_text(section.split("```\n")[3])
+    assert main(["mesh", drawing, "-o", "four_bar.inp"]) == 0
+    assert main(["run", "job.inp", "--element", "CPS4=Q4I", "-o", "out"]) == 0
+    with open("out/job.csv", newline="") as file:
+        last = list(csv.DictReader(file))[-1]
+    assert float(last["JAW: travel"]) == pytest.approx(values["travel"], rel=1e-3)
 
 
 def test_what_is_no_drawing_is_refused(tmp_path):
