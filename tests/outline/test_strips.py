@@ -94,7 +94,10 @@ def test_a_wide_link_between_leaves_is_cut_off_beside_its_ends():
 
 def test_bulky_parts_and_members_with_holes_keep_their_outline():
     plate = polyline([(0, 0), (40, 0), (40, 20), (0, 20)], closed=True)
-    assert not faces_of(plate).rows
+    assert list(faces_of(plate).rows.values()) == [(20, 10, 20, 10)]
+    wedge = polyline([(0, 0), (40, 0), (40, 20), (30, 20)], closed=True)
+    assert not faces_of([*wedge]).rows
+    assert not faces_of(polyline([(0, 0), (40, 0), (40, 20)], closed=True)).rows
     bar = polyline([(0, 0), (60, 0), (60, 4), (0, 4)], closed=True)
     faces = faces_of([*bar, *circle((30.0, 2.0), 1.0)])
     assert all(len(faces.faces[f]) == 1 for f in faces.rows)

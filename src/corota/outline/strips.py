@@ -599,7 +599,7 @@ def _count(
     size: float,
     through: int,
 ) -> None:
-    """Cells along the curves of members and of four-sided blocks between them.
+    """Cells along the curves of members and of four-sided blocks.
 
     Opposite sides of a face have as many cells, which passes from face to face across the cuts.
     """
@@ -621,11 +621,11 @@ def _count(
             need[k] = across
         for k in long:
             need[k] = along
-    cuts = {k for k in range(len(faces.curves)) if sum(k in cycle for cycle in four.values()) > 1}
-    structured += [
-        f for f, cycle in four.items()
-        if f not in structured and cuts.intersection(cycle) and _is_block(faces, faces.faces[f][0])
-    ]  # fmt: skip
+    blocks = [f for f in four if f not in structured and _is_block(faces, faces.faces[f][0])]
+    for f in blocks:
+        if faces.parts.count(faces.parts[f]) == 1:  # the whole part, not a block between members
+            need = [max(n, through) if k in four[f] else n for k, n in enumerate(need)]
+    structured += blocks
     same = list(range(len(faces.curves)))
     for f in structured:
         for a, b in (four[f][0::2], four[f][1::2]):
