@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import corota as ct
-from corota.errors import ModelError, UnsupportedError
+from corota.errors import ModelError
 from tests.dynamics.test_schemes import SCHEMES, column, run
 from tests.support.tied import KINDS, beam, constrained, system_of, with_nodes
 
@@ -244,8 +244,3 @@ def test_velocities_that_break_a_constraint_are_refused():
     model.velocity("right", y=3.0)
     with pytest.raises(ModelError, match="breaks the constraint"):
         run(model, period=1.0, increments=2)
-
-
-def test_explicit_motion_refuses_constraints():
-    with pytest.raises(UnsupportedError, match="implicit"):
-        run(flying("rigid", "Q4I"), period=1.0, scheme="central_difference")

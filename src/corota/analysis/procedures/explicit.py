@@ -11,18 +11,20 @@ import numpy as np
 
 from corota.analysis.energies import LARGE_ERROR
 from corota.analysis.increment_loop import Accepted, IncrementLoop
+from corota.analysis.procedures.explicit_constraints import ReducedMass, mass_of
 from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.rule import AtVelocity
 from corota.analysis.terms.contact.forward import forward_contact
 from corota.analysis.terms.damping import material_pairs
 from corota.analysis.terms.inertia import Inertia
-from corota.errors import ConvergenceError, InputError, ModelError, UnsupportedError
+from corota.errors import ConvergenceError, InputError, ModelError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
+    from corota.analysis.procedures.explicit_constraints import FreeMass
     from corota.analysis.terms.term import StatePoint
     from corota.model.steps import Dynamic
 
@@ -56,7 +58,7 @@ def diagonal(system: System) -> Floats:
     return system.pattern.diagonal_of(values)
 
 
-def stable_increment(system: System, u: Floats, mass: Floats) -> float:
+def stable_increment(system: System, u: Floats, mass: FreeMass) -> float:
     """Largest stable increment, 2 / (largest frequency) [time].
 
     Only dofs that are free and have mass count: constrained ones follow their supports, with or
@@ -68,24 +70,19 @@ def stable_increment(system: System, u: Floats, mass: Floats) -> float:
     ModelError
         If a free dof has stiffness but no mass, or if the frequency is not finite.
     """
-    free = ~system.conditions.constrained
-    moving = free & (mass > 0.0)
-    values = system.evaluate(u, 0.0).values
-    idle = free & ~moving
+    moving, idle = mass.moving, mass.idle
+    values = system.evaluate(u.copy(), 0.0).values
     if idle.any():
-        # What the free dofs without mass feel, whichever dof moves.
-        felt = system.pattern.largest_by_row(values)
-        _refuse_idle(system, idle & (felt > 0.0), "has stiffness but no mass")
+        _refuse_idle(system, idle & mass.felt(values), "has stiffness but no mass")
     if not moving.any():
         return np.inf
-    inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=moving)
     x = np.where(moving, np.random.default_rng(0).standard_normal(system.n_dofs), 0.0)
     largest = 0.0
     for _ in range(POWER):
-        x /= np.sqrt(x @ (mass * x))
-        y = np.where(moving, system.pattern.multiply(values, x), 0.0)
+        x /= np.sqrt(x @ mass.inertia(x))
+        y = np.where(moving, mass.stiffness(values, x), 0.0)
         largest = float(x @ y)
-        x = inverse * y
+        x = mass.response(y)
         if not x.any():
             return np.inf
     if not np.isfinite(largest):
@@ -113,7 +110,7 @@ def explicit_step(loop: IncrementLoop, step: Dynamic, stops: list[float]) -> Non
     InputError
         If there is damping, which this scheme leaves out.
     UnsupportedError
-        If there are constraints.
+        If nodes are in contact and depend on others by constraints.
     ModelError
         If the requested increment is not stable; the message gives the stable one. If a free dof
         with stiffness or load has no mass, or if there is no stiffness to find an increment from.
@@ -125,12 +122,6 @@ def explicit_step(loop: IncrementLoop, step: Dynamic, stops: list[float]) -> Non
         raise InputError(
             "central differences do not support damping; use an implicit scheme, or remove "
             "dashpots and rayleigh",
-            step.where,
-        )
-    if system.link.couples:
-        raise UnsupportedError(
-            "central differences do not support constraints and local axes, because eliminated "
-            "dofs make the mass matrix non-diagonal; use an implicit scheme",
             step.where,
         )
     stepper = ExplicitStepper(loop, step, stops)
@@ -172,9 +163,14 @@ class ExplicitStepper:
         self.system, self.state, self.step = loop.system, loop.state, step
         system, state = loop.system, loop.state
         self.mass = mass = diagonal(system)
+        self.moved = mass_of(system, mass, state.u)
+        if isinstance(self.moved, ReducedMass):
+            for pair in system.contact_term.pairs:
+                for side in filter(None, (pair.slave, pair.master)):
+                    self.moved.refuse_contact(side.node_list, step.where)
         constrained = system.conditions.constrained
         resumes = bool(state.resumes)
-        self.stable = np.inf if resumes else stable_increment(system, state.u, mass)
+        self.stable = np.inf if resumes else stable_increment(system, state.u, self.moved)
         # A checkpoint contains the increment.
         dt = step.period if resumes else self._increment()
         self.n = max(int(np.ceil(step.period / dt * (1.0 - 1e-12))), 1)
@@ -197,22 +193,22 @@ class ExplicitStepper:
         state.v[constrained] = given_v[constrained]
         self.u = state.u.copy()
         self.at = system.evaluate(self.u, 0.0, CentralDifference(state.v))
-        self.moving = ~constrained & (mass > 0.0)
-        self.idle = ~constrained & ~self.moving
-        self.inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=self.moving)
+        self.idle = self.moved.idle
         assert state.energies is not None
         self.account = account = state.energies
         self.contact = forward_contact(system, account, dt)
         if not resumes:
             _refuse_pushed(system, self.idle, self.at)
-        free = state.v - 0.5 * dt * self.inverse * self.at.residual
+            system.constraints.complete_rates(self.u, state.v)
+        free = state.v - 0.5 * dt * self.moved.inverse * self.at.residual
         still, force = np.zeros_like(free), np.zeros_like(free)
         if not resumes:
             force = self._contact(still, state.v, free, 0.5, 0.0)
         #: Contact forces of the last increment.
         self.force = force
         residual = self.at.residual - force
-        a = -self.inverse * residual
+        a = self._accelerate(state.v, residual, 0.0, 0.5)
+        residual = self._gathered(self.at, residual, a)
         account.drive(self.at.external, residual)
         self.begin = account.work
         #: Velocity half an increment ahead.
@@ -306,10 +302,12 @@ class ExplicitStepper:
         _refuse_pushed(system, self.idle, at)
         # Prescribed dofs have the rates of their amplitude, as in the implicit schemes.
         given_v, given_a = system.conditions.supports.rates(time, dt)
-        force = self._contact(du, self.v, self.v - dt * self.inverse * at.residual, 1.0, time)
+        free = self.v - dt * self.moved.inverse * at.residual
+        force = self._contact(du, self.v, free, 1.0, time)
         self.force = force
         residual = at.residual - force
-        a = -self.inverse * residual
+        a = self._accelerate(self.v, residual, time, 1.0)
+        residual = self._gathered(at, residual, a)
         account.add_work(du, at.external, residual)
         damped = 0.0
         if before.damping is not None and at.damping is not None:
@@ -323,8 +321,9 @@ class ExplicitStepper:
         worked = account.work - self.begin - self.work
         self.driven, self.work = moved, account.work - self.begin
         self.v = np.where(constrained, given_v, self.v + dt * a)
-        stiff = float(np.where(self.moving, at.internal - before.internal, 0.0) @ du)
-        inert = float(np.where(self.moving, mass * du, 0.0) @ du)
+        carried = self.moved.carried
+        stiff = float(np.where(carried, at.internal - before.internal, 0.0) @ du)
+        inert = float(np.where(carried, mass * du, 0.0) @ du)
         kinetic = 0.5 * float(whole @ (mass * whole))
         pending = float((at.external + np.where(constrained, residual, 0.0)) @ whole) * dt
         allowed = BLOW_UP * self.known.energy(worked, self.internal, pending)
@@ -376,7 +375,8 @@ class ExplicitStepper:
         )
         at = system.evaluate(self.u + moved, time, CentralDifference(self.v))
         residual = at.residual - self.force
-        acceleration = -self.inverse * residual
+        acceleration = self._accelerate(self.v, residual, time, 1.0, self.u + moved)
+        residual = self._gathered(at, residual, acceleration)
         given_v, given_a = system.conditions.supports.rates(time, self.dt)
         # The velocity of the middle of the increment is `v`.
         velocity = self.v + (lag - 0.5 * self.dt) * acceleration
@@ -401,6 +401,31 @@ class ExplicitStepper:
         account.kinetic, account.work, account.internal = sums
         account.drive(self.at.external, self.at.residual - self.force)
 
+    def _accelerate(
+        self, v: Floats, residual: Floats, time: float, share: float, u: Floats | None = None
+    ) -> Floats:
+        """Acceleration at a state that changes the velocity `v` over a share of an increment."""
+        dt = self.dt
+        at = self.u if u is None else u
+        return self.moved.accelerate(at, v, residual, share * dt, dt, self._driven(time))
+
+    def _gathered(self, at: Evaluation, residual: Floats, a: Floats) -> Floats:
+        """Residual with what dependent dofs, and their inertia, pass on to their masters."""
+        dependent = self.system.constraints.dependent
+        if not len(dependent):
+            return residual
+        inertia = np.zeros_like(residual)
+        inertia[dependent] = self.mass[dependent] * a[dependent]
+        return at.link.gather(residual + inertia)
+
+    def _driven(self, time: float) -> Floats:
+        """Moves of supports in the increment that begins at a step time, shape (n_dofs,)."""
+        supports, dt = self.system.conditions.supports, self.dt
+        if time < self.step.period - 0.5 * dt:
+            ahead: Floats = supports.at(time + dt, self.u) - self.u
+            return ahead
+        return dt * supports.rates(time, dt)[0]
+
     def _contact(
         self, du: Floats, before: Floats, free: Floats, share: float, time: float
     ) -> Floats:
@@ -418,12 +443,11 @@ class ExplicitStepper:
             Step time.
         """
         system, dt = self.system, self.dt
-        held = system.conditions.constrained
-        driven = dt * system.conditions.supports.rates(time, dt)[0]
-        if time < self.step.period - 0.5 * dt:
-            driven = system.conditions.supports.at(time + dt, self.u) - self.u
+        driven = self._driven(time)
+        held = self.moved.follow(driven, self.u)
         ahead = np.where(held, driven, dt * free)
-        force = self.contact.act(self.u, du, ahead, dt * before, share, self.inverse, time)
+        inverse = self.moved.inverse
+        force = self.contact.act(self.u, du, ahead, dt * before, share, inverse, time)
         if self.idle.any():
             pushed = self.idle & (np.abs(force) > BALANCED * np.abs(force).max())
             _refuse_idle(system, pushed, "has a contact force on it but no mass")
@@ -450,6 +474,7 @@ class Envelope:
 
     def __init__(self, system: System) -> None:
         self.columns = [np.flatnonzero(system.component == i) for i in (0, 1)]
+        self.turned = system.constraints.to_global
         self.clear()
 
     def clear(self) -> None:
@@ -460,6 +485,7 @@ class Envelope:
 
     def add(self, u: Floats, v: Floats, external: Floats, reaction: Floats) -> None:
         """Take an increment: displacement, velocity, loads and reactions, shape (n_dofs,)."""
+        u, v, external, reaction = map(self.turned, (u, v, external, reaction))
         if self.low:
             for low, high, values in zip(self.low, self.high, (u, v), strict=True):
                 np.minimum(low, values, out=low)
@@ -484,6 +510,7 @@ class Envelope:
 
 def momenta(system: System, mass: Floats, u: Floats, v: Floats) -> dict[str, float]:
     """Linear momenta, and the angular one about the origin at current positions."""
+    u, v = (system.constraints.to_global(part) for part in (u, v))
     component, push = system.component, mass * v
     at = system.model.mesh.points[system.node_of_dof]
     moved = np.zeros((system.model.mesh.n_nodes, 2))
