@@ -81,7 +81,16 @@ class Contact:
     def forget(self) -> None: ...
     def restore(self) -> None: ...
 
-_Constraints = tuple[_Floats, _Floats, _Floats, _Floats, _Floats, _Floats, _Floats | None]
+_Constraints = tuple[
+    _Floats,
+    _Floats,
+    _Floats,
+    _Floats,
+    _Floats,
+    _Floats,
+    _Floats | None,
+    NDArray[np.bool_] | None,
+]
 
 def line_contact(
     reference: _Floats,

@@ -122,10 +122,10 @@ def test_two_ways_to_write_it(
         (DISTRIBUTED.format("", ", WEIGHTING METHOD=CUBIC"), "", "expected UNIFORM"),
         ("*SURFACE, NAME=S, COMBINE=UNION\nTOP\n", "", "two surfaces are expected"),
         ("*SURFACE, NAME=S, COMBINE=UNION\nTOP, TOPS\n", "", "named 'TOPS'"),
-        ("", "*DLOAD\nEALL, HP3, 1., 1., 0.\n", "mean pressure"),
+        ("", "*DLOAD\nEALL, HP3, 1., 1., 1.\n", "both heights"),
         ("", "*DLOAD\nEALL, P3NU, 1.\n", "no user subroutine"),
         ("", "*DLOAD\nEALL, TRVEC5, 1., 1., 0.\n", "and no face 5"),
-        ("", "*DSLOAD\nTOP, HP, 1., 1., 0.\n", "mean pressure"),
+        ("", "*DSLOAD\nTOP, HP, 1., 1., 1.\n", "both heights"),
     ],
 )
 def test_faults_say_what_to_do(tmp_path: Path, model: str, step: str, said: str) -> None:

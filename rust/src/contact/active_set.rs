@@ -13,6 +13,7 @@ pub struct Constraints<'a> {
     pub fixed: &'a [f64],
     pub stiffness: &'a [f64],
     pub begin: Option<&'a [f64]>,
+    pub adheres: Option<&'a [bool]>,
     pub noise: f64,
 }
 
@@ -38,6 +39,7 @@ impl Constraints<'_> {
             p,
             q,
             noise: self.noise,
+            adheres: self.adheres.is_some_and(|a| a[i]),
         }
     }
 

@@ -25,7 +25,7 @@ pub struct Edge {
     pub nodes: [u32; 3],
     /// 2 or 3.
     pub n_nodes: usize,
-    /// Thickness of the nodes.
+    /// Thickness of the nodes; of edges that are turned about the axis a factor.
     pub thickness: [f64; 3],
     pub alpha_b: f64,
     /// Undeformed positions of the nodes.
@@ -122,7 +122,8 @@ pub fn pressure(edge: &Edge, at: &Place, p: f64) -> (EdgeForce, EdgeStiffness) {
     for (w, n, dn) in samples(edge.n_nodes) {
         let d = tangent(&at.x, &dn);
         let radius: f64 = (0..edge.n_nodes).map(|a| n[a] * at.x[a][0]).sum();
-        let depth = if edge.ring { TAU * radius } else { edge.thickness(&n) };
+        let thickness = edge.thickness(&n);
+        let depth = if edge.ring { TAU * radius * thickness } else { thickness };
         let s = w * depth * p;
         // Inward normal times length: the tangent turned to the left.
         for a in 0..edge.n_nodes {
@@ -132,7 +133,7 @@ pub fn pressure(edge: &Edge, at: &Place, p: f64) -> (EdgeForce, EdgeStiffness) {
                 k[a][b][0][1] -= s * n[a] * dn[b];
                 k[a][b][1][0] += s * n[a] * dn[b];
                 if edge.ring {
-                    let growth = w * p * TAU * n[a] * n[b];
+                    let growth = w * p * TAU * thickness * n[a] * n[b];
                     k[a][b][0][0] -= growth * d[1];
                     k[a][b][1][0] += growth * d[0];
                 }

@@ -14,7 +14,8 @@ type Floats<'py> = PyReadonlyArray1<'py, f64>;
 type Out<'py> = Bound<'py, PyArray1<f64>>;
 
 /// Weighted gaps and slips, covered and whole areas, areas of pressure laws, stiffness, and the
-/// weighted gaps that an increment began with, or None: what all methods take as ``at``.
+/// weighted gaps that an increment began with, or None, and which constraints do not open, or None:
+/// what all methods take as ``at``.
 #[derive(FromPyObject)]
 struct At<'py>(
     Floats<'py>,
@@ -24,6 +25,7 @@ struct At<'py>(
     Floats<'py>,
     Floats<'py>,
     Option<Floats<'py>>,
+    Option<PyReadonlyArray1<'py, bool>>,
 );
 
 impl At<'_> {
@@ -36,6 +38,7 @@ impl At<'_> {
             fixed: self.4.as_slice()?,
             stiffness: self.5.as_slice()?,
             begin: self.6.as_ref().map(|b| b.as_slice()).transpose()?,
+            adheres: self.7.as_ref().map(|a| a.as_slice()).transpose()?,
             noise,
         };
         let n = found.len();
@@ -43,6 +46,7 @@ impl At<'_> {
         for part in others.into_iter().chain(found.begin) {
             same(part.len(), n)?;
         }
+        same(found.adheres.map_or(n, <[bool]>::len), n)?;
         Ok(found)
     }
 }
@@ -56,10 +60,10 @@ fn same(found: usize, wanted: usize) -> PyResult<()> {
 
 /// The law of the constraints of a contact pair, or of a tie.
 ///
-/// ``at`` are the arrays (gap, slip, area, full, fixed, stiffness, begin), each of shape (n,): the
+/// ``at`` are the arrays (gap, slip, area, full, fixed, stiffness, begin, adheres), each of shape (n,): the
 /// weighted gap and slip [length^3], the area covered now, the whole one and that of pressure laws
 /// [length^2], the pressure per gap by which both are compared [force/length^3], and the weighted
-/// gap that the increment began with, or None. ``p`` and ``q`` are pressure and shear traction
+/// gap that the increment began with, or None, and which do not open, or None. ``p`` and ``q`` are pressure and shear traction
 /// [force/length^2]. States are 0 open, 1 closed (and sticking), 2 slipping.
 #[pyclass(module = "corota._core", frozen)]
 struct ContactLaw {
@@ -179,8 +183,8 @@ impl ContactLaw {
         Ok(all.residual(&self.law, p, q).into_pyarray(py))
     }
 
-    /// The constraints linearized: diagonals and right-hand sides of p and q, and dq/dp of what
-    /// slips. A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone.
+    /// The constraints linearized: diagonals and right-hand sides of p and q, and, of what slips,
+    /// dq/dp and q at no pressure. A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone.
     /// ``directions`` are the signs of slipping tractions.
     fn rows<'py>(
         &self,
@@ -190,7 +194,7 @@ impl ContactLaw {
         q: Floats<'_>,
         states: PyReadonlyArray1<'_, i8>,
         directions: Floats<'_>,
-    ) -> PyResult<[Out<'py>; 5]> {
+    ) -> PyResult<[Out<'py>; 6]> {
         let (all, p, q) = (at.constraints(self.noise)?, p.as_slice()?, q.as_slice()?);
         let (states, directions) = (states.as_slice()?, directions.as_slice()?);
         for n in [p.len(), q.len(), states.len(), directions.len()] {
@@ -206,6 +210,7 @@ impl ContactLaw {
             column(|r| r.q[0]),
             column(|r| r.q[1]),
             column(|r| r.follow),
+            column(|r| r.level),
         ])
     }
 

@@ -18,7 +18,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import corota._core as _core
-from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, Traction
+from corota.analysis.distributed_forces import (
+    STATIC_MASS,
+    BodyLoad,
+    Pressure,
+    Traction,
+    hydrostatic_thickness,
+)
 from corota.arrays import distinct
 from corota.errors import InputError, ModelError
 from corota.mesh.kinds import EDGES
@@ -260,8 +266,9 @@ class DistributedLoads:
         if load.item.kind == "penetrating pressure":
             load.force = self._penetrating(load)
             return load
-        core, drilling = self._core(load.faces)
-        if load.item.kind == "pressure":
+        hydrostatic = load.item.kind == "hydrostatic pressure"
+        core, drilling = self._core(load.faces, load.item.value[1:] if hydrostatic else ())
+        if load.item.kind.endswith("pressure"):
             load.force = Pressure(self.system, core)
         else:
             x, y = load.traction
@@ -375,10 +382,15 @@ class DistributedLoads:
         table = np.asarray(nodes, np.int64).reshape(-1, 3)
         return table, np.array(thickness).reshape(-1, 3), np.asarray(alpha, np.float64)
 
-    def _core(self, faces: Ints) -> tuple[_core.EdgeLoads, bool]:
-        """The core's edges, and whether some of them bulge with rotations."""
+    def _core(self, faces: Ints, heights: tuple[float, ...] = ()) -> tuple[_core.EdgeLoads, bool]:
+        """The core's edges, and whether some of them bulge with rotations.
+
+        A hydrostatic pressure is one of unit size on edges whose thickness varies with the depth.
+        """
         nodes, thickness, alpha = self._edges(faces)
         points = self.system.model.mesh.points
+        if heights:
+            thickness = hydrostatic_thickness(points, nodes, thickness, *heights)
         ring = self.system.axisymmetric
         edges = _core.EdgeLoads(points, nodes.astype(np.uint32), thickness, alpha, ring)
         return edges, bool((alpha > 0.0).any())

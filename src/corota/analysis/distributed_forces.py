@@ -325,6 +325,53 @@ class Pressure:
         to.entries.append(entries)
 
 
+def hydrostatic_thickness(
+    points: Floats, nodes: Ints, thickness: Floats, level: float, height: float
+) -> Floats:
+    """Thickness times the share of a hydrostatic pressure, projected onto the shape functions.
+
+    With it the forces on the nodes of undeformed edges are the exact ones.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n_nodes, 2)
+    nodes : ndarray of int, shape (n, 3)
+        The third is the first on straight edges.
+    thickness : ndarray, shape (n, 3)
+    level, height : float
+        y where the pressure is zero and where it is one [length].
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+    """
+    out = np.zeros_like(thickness)
+    for i, ends in enumerate(nodes):
+        count = 2 if ends[2] == ends[0] else 3
+        r, weight = _points_of_edge(points[ends[:count], 1] - level)
+        n = np.stack([0.5 - 0.5 * r, 0.5 + 0.5 * r], axis=1)
+        if count == 3:
+            n = np.stack([0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r], axis=1)
+        share = np.maximum((n @ points[ends[:count], 1] - level) / (height - level), 0.0)
+        load = n.T @ (weight * share * (n @ thickness[i, :count]))
+        out[i, :count] = np.linalg.solve(n.T @ (weight[:, None] * n), load)
+    return out
+
+
+def _points_of_edge(depth: Floats) -> tuple[Floats, Floats]:
+    """Quadrature points of an edge on both sides of the place where the depth vanishes."""
+    t, w = np.polynomial.legendre.leggauss(4)
+    polynomial = [0.5 * (depth[1] - depth[0]), 0.5 * (depth[0] + depth[1])]
+    if len(depth) == 3:
+        bend = 0.5 * (depth[0] + depth[1]) - depth[2]
+        polynomial = [bend, polynomial[0], depth[2]]
+    zeros = np.roots(polynomial) if np.any(polynomial[:-1]) else np.zeros(0)
+    inside = np.sort(zeros.real[(zeros.imag == 0.0) & (np.abs(zeros.real) < 1.0)])
+    ends = np.concatenate([[-1.0], inside, [1.0]])
+    half, middle = 0.5 * np.diff(ends), 0.5 * (ends[1:] + ends[:-1])
+    return (middle[:, None] + half[:, None] * t).ravel(), (half[:, None] * w).ravel()
+
+
 def evaluate(
     system: NumberedModel, load: Any, u: Floats | None, value: float | tuple[float, float]
 ) -> tuple[Floats, Triplets]:
@@ -349,4 +396,5 @@ __all__ = [
     "LoadSum",
     "Pressure",
     "Traction",
+    "hydrostatic_thickness",
 ]

@@ -40,6 +40,8 @@ def _settings(pair: ContactPair) -> dict[str, Any]:
     plain = {k: v for k, v in found.items() if isinstance(v, bool | int | float | str)}
     sides = ("name", "slave", "master")
     settings: dict[str, Any] = {k: v for k, v in plain.items() if k not in sides}
+    if pair.steps is not None:
+        settings["steps"] = list(pair.steps)
     if pair.law is not None:
         kind, pressure, overclosure = pair.law.constants
         settings["law"] = {"kind": kind, "pressure": pressure, "overclosure": overclosure}

@@ -304,6 +304,14 @@ class ContactPair(Brief):
     reach : float
         Search distance for pairs [length]; 0 for four edges.
     name : str
+    shear_limit : float, optional
+        Largest shear traction of friction [force/length^2], at any pressure.
+    separates : bool
+        Whether surfaces that have met come apart again. If not, they slide on each other and carry
+        tension; for static and implicit steps without path control.
+    steps : tuple of int, optional
+        Numbers of the steps in which the surfaces may meet, from 1; all by default. What they
+        pressed at the end of the step before fades over the first static step without them.
     """
 
     slave: str | Ints
@@ -321,6 +329,9 @@ class ContactPair(Brief):
     adjust: float = field(default=0.0, kw_only=True)
     adjust_nodes: str | Ints | None = field(default=None, kw_only=True)
     smooth: bool = field(default=False, kw_only=True)
+    shear_limit: float | None = field(default=None, kw_only=True)
+    separates: bool = field(default=True, kw_only=True)
+    steps: tuple[int, ...] | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
@@ -344,6 +355,22 @@ class ContactPair(Brief):
                 f"not slip give at most {MOST_FRICTION:g}",
                 self.where,
             )
+        limit = self.shear_limit
+        if limit is not None and not (0.0 < limit < math.inf and self.friction):
+            raise InputError(
+                f"the largest shear traction must be > 0 and go with friction, not {limit:g} with "
+                f"{self.friction:g}",
+                self.where,
+            )
+        if not self.separates and self.law is not None:
+            raise InputError(
+                "surfaces that do not separate are in hard contact: omit the pressure law",
+                self.where,
+            )
+        if self.steps is not None:
+            self.steps = tuple(sorted({int(number) for number in self.steps}))
+            if not self.steps or self.steps[0] < 1:
+                raise InputError("steps of a contact pair are numbers from 1", self.where)
         if self.clearance is not None and not math.isfinite(self.clearance):
             raise InputError("the clearance of a contact pair must be finite", self.where)
         if self.smooth and (self.itself or isinstance(self.master, RigidCurve)):

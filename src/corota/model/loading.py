@@ -199,6 +199,38 @@ class Loading:
         """Apply a pressure [force/length^2] on edges, positive into the element."""
         self.loads.append(EdgeLoad(self._edges(edges), "pressure", (p,), amplitude))
 
+    def hydrostatic_pressure(
+        self,
+        edges: str | ArrayLike,
+        p: float,
+        *,
+        level: float,
+        height: float,
+        amplitude: str = "",
+    ) -> None:
+        """Apply the pressure of a liquid at rest on edges, which follows them as a pressure does.
+
+        It is zero at the level and above, and grows linearly with the depth; heights are y of the
+        undeformed edges.
+
+        Parameters
+        ----------
+        edges : str or array_like of int, shape (n, 2)
+        p : float
+            Pressure at `height` [force/length^2].
+        level, height : float
+            y where the pressure is zero, and where it is `p` [length].
+        amplitude : str
+            Name in ``Model.amplitudes``; empty: a ramp.
+
+        Raises
+        ------
+        InputError
+            If both heights are the same.
+        """
+        value = (p, level, height)
+        self.loads.append(EdgeLoad(self._edges(edges), "hydrostatic pressure", value, amplitude))
+
     def penetrating_pressure(
         self,
         edges: str | ArrayLike,

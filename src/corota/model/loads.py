@@ -363,7 +363,7 @@ class Force(Brief):
 #: Kinds of loads on edges.
 EDGE_LOADS = (
     *("pressure", "traction", "following traction", "shear", "electrostatic"),
-    "penetrating pressure",
+    *("penetrating pressure", "hydrostatic pressure"),
 )
 
 
@@ -376,13 +376,15 @@ class EdgeLoad(Brief):
     edges : str or array_like of int, shape (n, 2)
         Edge set, or pairs of global cell index and local edge (from 0).
     kind : {"pressure", "traction", "following traction", "shear", "electrostatic", \
-            "penetrating pressure"}
+            "penetrating pressure", "hydrostatic pressure"}
         ``pressure``: normal, positive into the element, follows the deforming edge in
         geometrically nonlinear steps (the thickness stays the undeformed one); ``traction``:
         dead, fixed in space; ``following traction``: the same on the undeformed edge, rotates with
         it and acts on its current length, as a pressure does; ``shear``: along the edge, with the
         element on the left, and follows it; ``electrostatic``: towards an opposite electrode, by
-        the current gap; ``penetrating pressure``: a pressure on the edges that a fluid reaches.
+        the current gap; ``penetrating pressure``: a pressure on the edges that a fluid reaches;
+        ``hydrostatic pressure``: value ``(p, level, height)``, a pressure that is zero at the
+        level and on its far side, p at the height and linear in y, by undeformed heights.
     value : tuple of float
         ``(p,)``, ``(tx, ty)`` or ``(t,)`` [force/length^2]; times thickness and length.
         ``electrostatic``: half the permittivity times the square of the voltage [force], and x, y
@@ -399,7 +401,7 @@ class EdgeLoad(Brief):
     edges: str | Ints
     kind: Literal[
         "pressure", "traction", "following traction", "shear", "electrostatic",
-        "penetrating pressure",
+        "penetrating pressure", "hydrostatic pressure",
     ]  # fmt: skip
     value: tuple[float, ...]
     amplitude: str = ""
@@ -417,6 +419,11 @@ class EdgeLoad(Brief):
         choose(self.kind, EDGE_LOADS, "load on edges", self.where)
         what = "a pressure" if self.kind.endswith("pressure") else "a traction"
         self.value = tuple(number(v, what, self.where) for v in self.value)
+        if self.kind == "hydrostatic pressure" and self.value[1] == self.value[2]:
+            text = (
+                "a hydrostatic pressure needs two heights: that of the level and that of its size"
+            )
+            raise InputError(text, self.where)
         if self.kind == "penetrating pressure" and min(self.value) < 0.0:
             raise InputError(f"a fluid has pressures >= 0, not {min(self.value):g}", self.where)
         self.amplitude = _amplitude(self.amplitude, self.where)

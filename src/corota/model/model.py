@@ -447,6 +447,9 @@ class Model(Loading, LineSections, InitialFields, Stages):
         stabilize: bool = False,
         reach: float = 0.0,
         smooth: bool = False,
+        shear_limit: float | None = None,
+        separates: bool = True,
+        steps: Sequence[int] | None = None,
         name: str = "",
     ) -> None:
         """Define contact of two surfaces, or of one and a rigid curve; see ``docs/contact.md``.
@@ -474,6 +477,9 @@ class Model(Loading, LineSections, InitialFields, Stages):
                 name,
                 adjust=adjust,
                 smooth=smooth,
+                shear_limit=shear_limit,
+                separates=separates,
+                steps=None if steps is None else tuple(steps),
             )
         )
 

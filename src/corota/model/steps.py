@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 #: What :meth:`Step.remove` ends.
 REMOVED = (
     *("all", *LOAD_KINDS, "traction", "pressure", "shear", "electrostatic"),
+    "hydrostatic pressure",
     *("gravity", "centrifugal"),
 )
 #: Actions at bifurcation points.
@@ -221,8 +222,9 @@ class Step(Brief, Loading, Settings):
         kind : str
             ``"all"``, or ``"force"`` (with moments), ``"distributed"`` (tractions, pressures,
             shear, gravity, centrifugal forces) or ``"temperature"``, anywhere. With a place also
-            ``"traction"``, ``"pressure"``, ``"shear"``, ``"electrostatic"``; ``"gravity"`` and
-            ``"centrifugal"`` with an element set or without a place.
+            ``"traction"``, ``"pressure"``, ``"shear"``, ``"electrostatic"``,
+            ``"hydrostatic pressure"``; ``"gravity"`` and ``"centrifugal"`` with an element set or
+            without a place.
         at : str or array_like, optional
             Set, or as the method of that load takes it; everywhere by default.
 
@@ -259,8 +261,10 @@ class Step(Brief, Loading, Settings):
             self.temperature(0.0, at)
         elif kind == "all":
             self.force(at)
-            for name in ("traction", "shear", "pressure", "electrostatic"):
+            for name in ("traction", "shear", "pressure", "electrostatic", "hydrostatic pressure"):
                 self.remove(name, at)
+        elif kind == "hydrostatic pressure":
+            self.hydrostatic_pressure(at, 0.0, level=0.0, height=1.0)
         elif kind in ("traction", "electrostatic"):
             getattr(self, kind)(at)
         else:
@@ -457,10 +461,14 @@ class Buckle(Step):
         Number of lowest positive factors.
     preload : bool
         Start from the state after the steps before; otherwise from the unloaded structure.
+    dead_loads : bool
+        Let loads that follow the structure without a potential, as a pressure on the free end of a
+        column, keep their directions, as decks have it. By default they are refused.
     """
 
     modes: int = 1
     preload: bool = True
+    dead_loads: bool = field(default=False, compare=False)
 
     procedure = "buckle"
 
@@ -477,8 +485,10 @@ class Frequency(Step):
     Parameters
     ----------
     modes : int
-        Number of modes, from the lowest.
+        Number of modes, from the lowest, or the largest number in a range; 0 for all in the range.
     mass : {"consistent", "constant", "lumped"}
+    lowest, highest : float
+        Range of frequencies [1/time], of real modes; infinity for no end.
     complex_modes : bool
         Include damping (of materials and dashpots) and, under a centrifugal load, Coriolis forces:
         complex frequencies with rates of growth or decay. Follower loads without
@@ -491,13 +501,20 @@ class Frequency(Step):
     mass: Literal["consistent", "constant", "lumped"] = "consistent"
     complex_modes: bool = False
     rayleigh: tuple[float, float] = (0.0, 0.0)
+    lowest: float = 0.0
+    highest: float = math.inf
 
     procedure = "frequency"
 
     def __post_init__(self) -> None:
         super().__post_init__()
         choose(self.mass, MASSES, "kind of mass", self.where)
-        if self.modes < 1:
+        if not 0.0 <= self.lowest < self.highest:
+            text = f"a range of frequencies must rise from 0, not {self.lowest} to {self.highest}"
+            raise InputError(text, self.where)
+        if self.complex_modes and (self.lowest, self.highest) != (0.0, math.inf):
+            raise InputError("complex modes are found by number, not by range", self.where)
+        if self.modes < (1 if self.highest == math.inf else 0):
             raise InputError(f"at least one mode is needed, not {self.modes}", self.where)
 
 

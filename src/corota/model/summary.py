@@ -107,6 +107,9 @@ def joint_lines(model: Model) -> list[str]:
         lines.append(
             f"contact {_named(pair.slave)} on {_named(pair.master)}: {pair.method}, {law}, "
             f"friction {pair.friction:g}"
+            + (f" up to {pair.shear_limit:g}" if pair.shear_limit is not None else "")
+            + ("" if pair.separates else ", no separation")
+            + ("" if pair.steps is None else f", in steps {', '.join(map(str, pair.steps))}")
         )
     lines += [f"tie {_named(tie.slave)} to {_named(tie.master)}" for tie in model.ties]
     counts: dict[str, int] = {}

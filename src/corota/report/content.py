@@ -15,6 +15,7 @@ from corota.io.regular_file import parse_json, read_bytes
 from corota.io.result_reader import FileResults, read_vtkhdf
 from corota.mesh import EDGES
 from corota.model import elements
+from corota.model.contact import edges_or_nodes
 from corota.model.description import describe, rigid_curves
 from corota.model.summary import model_lines
 from corota.model.units import Units
@@ -257,7 +258,9 @@ def model_chunk(results: Results, level: int = 9) -> bytes:
         for side in ("slave", "master"):
             where = getattr(pair, side)
             if isinstance(where, str | np.ndarray):
-                arrays[f"{side} {len(surfaces)}"] = _ends(results, mesh.edge_pairs(where))
+                # A surface of single nodes has no edges to draw.
+                edges, _ = edges_or_nodes(mesh, where)
+                arrays[f"{side} {len(surfaces)}"] = _ends(results, edges)
         surfaces.append({"name": pair.name})
     described = getattr(results, "description", None)
     if described is None:

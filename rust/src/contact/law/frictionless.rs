@@ -16,7 +16,7 @@ impl TangentialLaw for Frictionless {
         0.0
     }
 
-    fn follow(&self, _: f64) -> f64 {
-        0.0
+    fn slipping(&self, _: &Constraint) -> [f64; 2] {
+        [0.0; 2]
     }
 }

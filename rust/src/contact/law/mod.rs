@@ -65,6 +65,8 @@ pub struct Constraint {
     pub q: f64,
     /// Gaps and slips that are rounding [length].
     pub noise: f64,
+    /// Whether it does not open: it was closed, and its surfaces do not separate.
+    pub adheres: bool,
 }
 
 impl Constraint {
@@ -104,8 +106,9 @@ pub struct Rows {
     pub p: [f64; 2],
     /// The same along.
     pub q: [f64; 2],
-    /// Change of the shear traction with the pressure, where it slips.
+    /// Shear traction where it slips: its change with the pressure, and that at no pressure.
     pub follow: f64,
+    pub level: f64,
 }
 
 /// Conditions across the surfaces.
@@ -159,8 +162,9 @@ pub trait TangentialLaw: Send + Sync {
     /// Error of the condition as a traction.
     fn error(&self, at: &Constraint) -> f64;
 
-    /// Change of the shear traction of a slipping constraint with its pressure.
-    fn follow(&self, direction: f64) -> f64;
+    /// Size of the shear traction of a slipping constraint, as a line: its slope by the pressure, and
+    /// its value where that is zero.
+    fn slipping(&self, at: &Constraint) -> [f64; 2];
 }
 
 /// The whole law of a constraint.
@@ -215,6 +219,10 @@ impl ContactLaw {
                 shear = at.q;
             }
         }
+        if at.adheres && at.seen() {
+            let slips = tangential.slips(at, shear, maximum(at.p, 0.0), last);
+            return if slips { State::Slipping } else { State::Closed };
+        }
         // What touches without pressure holds, or nothing would hold a body that just rests.
         if push.is_nan() || push <= -normal.rounding(at) {
             return State::Open;
@@ -227,7 +235,11 @@ impl ContactLaw {
     pub fn residual(&self, at: &Constraint) -> f64 {
         let Self::Unilateral(normal, tangential) = self else { return Joined.residual(at) };
         let area = if at.seen() { at.area } else { at.full };
-        let mut error = if at.seen() { normal.error(at) } else { at.p.abs() };
+        let mut error = match at.seen() {
+            true if at.adheres => (at.stiffness * at.distances()[0]).abs(),
+            true => normal.error(at),
+            false => at.p.abs(),
+        };
         error += tangential.error(at);
         area * error
     }
@@ -245,11 +257,13 @@ impl ContactLaw {
             }
         };
         let along = if state == State::Closed { [0.0, at.slip] } else { [idle, 0.0] };
-        let follow = match self {
-            Self::Unilateral(_, law) if state == State::Slipping => law.follow(direction),
-            _ => 0.0,
+        let [follow, level] = match self {
+            Self::Unilateral(_, law) if state == State::Slipping => {
+                law.slipping(at).map(|part| direction * part)
+            }
+            _ => [0.0; 2],
         };
-        Rows { p: across, q: along, follow }
+        Rows { p: across, q: along, follow, level }
     }
 
     /// Pressure, slope and energy per area of the law across at a gap [length].

@@ -26,6 +26,7 @@ fn constraint(gap: f64, p: f64, q: f64) -> Constraint {
         p,
         q,
         noise: 1e-14,
+        adheres: false,
     }
 }
 

@@ -42,6 +42,11 @@ DIFFERENCE = 1e-5
 CORNER = 0.1
 #: Residual of the modes: the factors' own error is of its square.
 RESIDUAL = 1e-4
+#: What is noted where loads keep their directions.
+DEAD = (
+    "pressures that would follow the structure have no potential here and keep their directions, "
+    "as in CalculiX; whether they flutter as followers is a matter of dynamics"
+)
 #: Where the modes are counted: this far behind the last one that was found.
 BEHIND = 1e-3
 
@@ -68,11 +73,12 @@ def buckle_step(
     # Without the preload it is the structure at rest that is followed.
     system.set_kinematics(True, about_linear=system.about_linear and step.preload)
     base = state.u
+    dead: list[str] | None = [] if step.dead_loads else None
     if not step.preload:
         _check_unloaded(system, step)
         base = np.zeros_like(state.u)
     try:
-        factors, shapes = _solve(system, step, number, base)
+        factors, shapes = _solve(system, step, number, base, dead)
     finally:
         # A perturbation leaves nothing behind.
         system.conditions.end_time = 0.0
@@ -82,6 +88,7 @@ def buckle_step(
     state.modes.append(Modes("buckling", number, factors, by_node.reshape(len(factors), -1, 3)))
     scalars = {f"buckling factor {k}": float(f) for k, f in enumerate(factors, start=1)}
     listed = ", ".join(f"{f:.6g}" for f in factors)
+    state.notes += [f"buckling step {number}: {note}" for note in dead or []]
     state.notes.append(f"buckling factors of step {number}: {listed}")
     save(state, 1, 0.0, scalars)
 
@@ -98,13 +105,15 @@ def _check_unloaded(system: System, step: Buckle) -> None:
         )
 
 
-def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats, Floats]:
+def _solve(
+    system: System, step: Buckle, number: int, u: Floats, dead: list[str] | None
+) -> tuple[Floats, Floats]:
     force, move, loads = _perturbation(system, step, number, u)
     if system.n_multipliers:
         # With multipliers the stiffness is indefinite.
         factors, shapes = factors_with_contact(system, u, force, move, loads, step.modes)
         return factors, _largest_one(system, shapes)
-    base = _symmetric(system, system.evaluate(u, 0.0))
+    base = _symmetric(system, system.evaluate(u, 0.0), dead)
     values = _unknowns(system, base, base.residual)
     response, negative = system.correct(replace(base, values=base.values.copy()), force, move)
     if negative > 0:
@@ -113,7 +122,7 @@ def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats
             "linear buckling needs a stable one; follow its path instead (path=ArcLength(...))",
             step.where,
         )
-    change = _derivative(system, u, values, response, loads)
+    change = _derivative(system, u, values, response, loads, dead)
     largest_move = _moved(system, response, loads)
     constrained, free = system.conditions.constrained, system.constraints.free
     pattern = system.constraints.pattern
@@ -211,6 +220,7 @@ def _derivative(
     values: Floats,
     response: Floats,
     loads: Conditions,
+    dead: list[str] | None = None,
 ) -> Floats:
     """Derivative of the tangent `values` along the response, by entries of the pattern.
 
@@ -230,7 +240,7 @@ def _derivative(
     def neighbor(h: float) -> Floats:
         system.free.offset = None if heating is None else h * heating
         try:
-            at = _symmetric(system, system.evaluate(u + h * response, 0.0))
+            at = _symmetric(system, system.evaluate(u + h * response, 0.0), dead)
         finally:
             system.free.offset = None
         return _unknowns(system, at, at.residual - h * mechanical)
@@ -250,22 +260,27 @@ def _derivative(
     zero, own = np.zeros(system.n_dofs), system.pattern.zeros()
     _, stiffness = loads.external(loads.factors.period, u, own)
     if stiffness is not None or own.any():
-        at = _symmetric(system, Evaluation(zero, zero, zero, own, stiffness))
+        at = _symmetric(system, Evaluation(zero, zero, zero, own, stiffness), dead)
         change += _unknowns(system, replace(at, link=system.constraints.link(u)), zero)
     if largest_move == 0.0 and not change.any():
         raise ConvergenceError("the perturbing load causes no displacement")
     return change
 
 
-def _symmetric(system: System, at: Evaluation) -> Evaluation:
-    """The evaluation with the stiffness of its loads in its values."""
+def _symmetric(system: System, at: Evaluation, dead: list[str] | None) -> Evaluation:
+    """The evaluation with the stiffness of its loads in its values.
+
+    Where that has no potential, loads are refused, or keep their directions; `dead` takes a note.
+    """
     if at.load_stiffness is None:
         return at
     symmetric, _ = system._add_load_stiffness(at)
-    if not symmetric:
+    if not symmetric and dead is not None:
+        dead[:] = [DEAD]
+    elif not symmetric:
         raise UnsupportedError(
             "loads that follow the structure without a potential have no buckling factors "
-            "(non-conservative: use dynamics)"
+            "(non-conservative: use dynamics; dead_loads=True keeps their directions)"
         )
     return replace(at, load_stiffness=None)
 

@@ -18,7 +18,7 @@ from corota.analysis.linear.eigen import quadratic_modes, symmetric_modes, unsym
 from corota.analysis.procedures.motion_start import check_density
 from corota.analysis.terms.complex_stiffness import relaxing_note
 from corota.analysis.terms.linearized import LinearMotion
-from corota.errors import ModelError
+from corota.errors import ModelError, UnsupportedError
 from corota.model.paths import Modes
 
 if TYPE_CHECKING:
@@ -62,12 +62,16 @@ def frequency_step(
     if step.complex_modes:
         values, shapes = quadratic_modes(lin, lin.damping(step.rayleigh), step.modes)
     elif lin.symmetric:
-        squares, real = symmetric_modes(lin, step.modes)
+        squares, real = _real_modes(lin, step)
         # Free motions have squares of rounding size, of either sign.
         noise = FREE * float(np.abs(squares).max(initial=0.0))
         values = np.where(squares < -noise, 1.0, 1j) * np.sqrt(np.abs(squares))
         shapes = real.astype(complex)
     else:
+        if (step.lowest, step.highest) != (0.0, math.inf):
+            raise UnsupportedError(
+                "with loads without a potential modes are found by number, not by range", step.where
+            )
         values, shapes = unsymmetric_modes(lin, step.modes)
         if np.any(lin.damping().data):
             state.notes.append(
@@ -85,6 +89,34 @@ def frequency_step(
     scalars = _scalars(lin, modes)
     state.at = system.evaluate(state.u, 0.0)
     save(state, 1, 1.0, scalars)
+
+
+def _real_modes(lin: LinearMotion, step: Frequency) -> tuple[Floats, Floats]:
+    """Squares of circular frequencies in the range of the step, and shapes."""
+    if (step.lowest, step.highest) == (0.0, math.inf):
+        return symmetric_modes(lin, step.modes)
+    skipped = _count_below(lin, step.lowest, step) if step.lowest else 0
+    count = skipped + step.modes
+    if step.highest < math.inf:
+        inside = _count_below(lin, step.highest, step)
+        count = inside if not step.modes else min(count, inside)
+    if count <= skipped:
+        raise ModelError(
+            f"no frequency lies between {step.lowest:g} and {step.highest:g}", step.where
+        )
+    squares, shapes = symmetric_modes(lin, count)
+    return squares[skipped:], shapes[:, skipped:]
+
+
+def _count_below(lin: LinearMotion, frequency: float, step: Frequency) -> int:
+    """Modes below a frequency: as many as the shifted stiffness has negative pivots."""
+    square = (2.0 * math.pi * frequency) ** 2
+    factor = lin.factor(lin.sub(lin.stiffness) - square * lin.sub(lin.mass), True)
+    if factor.negative < 0:
+        raise UnsupportedError(
+            "with contact the modes in a range cannot be counted: give their number", step.where
+        )
+    return factor.negative
 
 
 def _modes(

@@ -20,6 +20,7 @@ from corota.io.deck.drafts import (
     Instance,
     InteractionDraft,
     MaterialDraft,
+    NonstructuralDraft,
     PairDraft,
     PretensionDraft,
     Scope,
@@ -82,6 +83,7 @@ class Deck:
     system: tuple[Floats, Floats] | None = None
     #: Lines of ``*NODAL THICKNESS``.
     thicknesses: list[Draft] = field(default_factory=list)
+    nonstructural: list[NonstructuralDraft] = field(default_factory=list)
     imperfections: list[ImperfectionDraft] = field(default_factory=list)
     velocities: list[Draft] = field(default_factory=list)
     initial: list[InitialDraft] = field(default_factory=list)

@@ -327,6 +327,21 @@ class AttachedDraft:
 
 
 @dataclass(eq=False, repr=False)
+class NonstructuralDraft:
+    """One ``*NONSTRUCTURAL MASS``: a mass in the elements of a set, without stiffness.
+
+    ``units`` says what the value is per; a total is shared by mass, or ``by_volume``.
+    """
+
+    card: Card
+    row: Row
+    elset: str
+    value: float
+    units: str
+    by_volume: bool = False
+
+
+@dataclass(eq=False, repr=False)
 class InteractionDraft:
     """One ``*SURFACE INTERACTION`` with the cards below it.
 
@@ -340,6 +355,9 @@ class InteractionDraft:
     pressure: list[float] = field(default_factory=list)
     overclosure: list[float] = field(default_factory=list)
     friction: float = 0.0
+    #: Largest shear traction, and whether what has met separates.
+    shear_limit: float | None = None
+    separates: bool = True
 
 
 @dataclass(eq=False, repr=False)
@@ -361,6 +379,15 @@ class PairDraft:
     stabilize: int = 0
     smooth: bool = False
     name: str = ""
+    #: Steps from which on the pair acts or does not.
+    changes: dict[int, bool] = field(default_factory=dict)
+
+    def acts(self, steps: int) -> tuple[int, ...] | None:
+        """Steps in which it acts; None for all."""
+        if not self.changes:
+            return None
+        on = [max((n for n in self.changes if n <= k), default=0) for k in range(1, steps + 1)]
+        return tuple(k for k, n in enumerate(on, start=1) if self.changes.get(n, True))
 
     def joins(self, slave: str, master: str) -> bool:
         """Whether these are its surfaces."""

@@ -146,7 +146,9 @@ class LineElement:
 
 #: Beams and springs; beams of three nodes become two of two.
 LINE_ELEMENTS: dict[str, LineElement] = {
-    **dict.fromkeys(("B21", "B23", "B31", "B31R", "B33"), LineElement("line2", 2, "beam")),
+    **dict.fromkeys(
+        ("B21", "B23", "B31", "B31R", "B33", "PIPE21", "PIPE31"), LineElement("line2", 2, "beam")
+    ),
     **dict.fromkeys(("B22", "B32", "B32R"), LineElement("line2", 3, "beam")),
     **dict.fromkeys(("SPRINGA", "SPRING2"), LineElement("line2", 2, "spring")),
     "SPRING1": LineElement("point1", 1, "spring"),

@@ -211,6 +211,9 @@ _TABLE: dict[str, Keyword] = {
     "DAMPING": Keyword(card("dynamic.damping"), "ALPHA BETA", place="model"),
     "MASS": Keyword(card("attachments.mass"), "ELSET", place="model"),
     "ROTARY INERTIA": Keyword(card("attachments.rotary_inertia"), "ELSET", place="model"),
+    "NONSTRUCTURAL MASS": Keyword(
+        card("material.nonstructural_mass"), "ELSET UNITS DISTRIBUTION", place="model"
+    ),
     "DASHPOT": Keyword(card("attachments.dashpot"), "ELSET", place="model"),
     "GAP": Keyword(card("attachments.gap"), "ELSET", place="model"),
     "INITIAL CONDITIONS": Keyword(card("dynamic.initial_conditions"), "TYPE", place="model"),
@@ -255,13 +258,17 @@ _TABLE: dict[str, Keyword] = {
     ),
     "SURFACE BEHAVIOR": Keyword(
         card("contact.surface_behavior"),
-        "PRESSURE-OVERCLOSURE",
+        "PRESSURE-OVERCLOSURE NOSEPARATION",
         "AUGMENTEDLAGRANGE DIRECT PENALTY",
         place="model",
     ),
     "FRICTION": Keyword(
-        card("contact.friction"), "", "SLIPTOLERANCE LAGRANGE ELASTICSLIP", place="model"
+        card("contact.friction"),
+        "ROUGH TAUMAX",
+        "SLIPTOLERANCE LAGRANGE ELASTICSLIP SHEARTRACTIONSLOPE",
+        place="model",
     ),
+    "MODEL CHANGE": Keyword(card("contact.model_change"), "TYPE ADD REMOVE"),
     "CLEARANCE": Keyword(card("contact.clearance"), "SLAVE MASTER VALUE", place="model"),
     "TIE": Keyword(
         card("contact.tie"),

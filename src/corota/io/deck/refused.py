@@ -57,7 +57,7 @@ IGNORED: dict[str, str] = {
 }
 
 _CONTACT = "name the pairs of surfaces by *CONTACT PAIR with a *SURFACE INTERACTION"
-_CHANGE = "contact pairs and their interactions apply to all steps"
+_CHANGE = "an interaction applies to all steps; pairs may end and begin by *MODEL CHANGE"
 _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
 HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
 _OWN_CARDS = ", ".join(f"*{law.card}" for name, law in LAWS.items() if key(law.card) == name)
@@ -78,9 +78,7 @@ UNSUPPORTED: dict[str, str] = {
         ),
         _CONTACT,
     ),
-    **dict.fromkeys(
-        ("CHANGEFRICTION", "CHANGECONTACTTYPE", "CHANGESURFACEBEHAVIOR", "MODELCHANGE"), _CHANGE
-    ),
+    **dict.fromkeys(("CHANGEFRICTION", "CHANGECONTACTTYPE", "CHANGESURFACEBEHAVIOR"), _CHANGE),
     "CONTACTDAMPING": "contact has no damping of its own; damp the bodies by *DAMPING",
     "SURFACESMOOTHING": "give round rigid surfaces by *SURFACE, TYPE=SEGMENTS with CIRCL",
     "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
@@ -191,15 +189,17 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("SHELLSECTION", "COMPOSITE"): "layers are not part of this version",
     ("SPRING", "ORIENTATION"): "give the springs global directions",
     ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
-    ("SURFACEBEHAVIOR", "NOSEPARATION"): "surfaces in contact may separate; join them by *TIE",
-    ("FRICTION", "ROUGH"): "give a friction coefficient of 1e6",
     ("FRICTION", "ANISOTROPIC"): "friction has one coefficient",
     ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",
-    ("FRICTION", "TAUMAX"): "there is no separate limit of the shear traction",
     ("FRICTION", "USER"): "no user subroutine is called",
     ("DAMPING", "COMPOSITE"): "damping of modes is given by *MODAL DAMPING",
     ("DAMPING", "STRUCTURAL"): "damping is by ALPHA and BETA, and *MODAL DAMPING",
     ("MASS", "ALPHA"): "damping is by ALPHA of *DAMPING of materials, and *DASHPOT",
+    ("PLASTIC", "SCALESTRESS"): "give the scaled yield stresses",
+    ("MASS", "TYPE"): "a point has the same mass in both directions",
+    ("MODALDYNAMIC", "CONTINUE"): "the motion goes on from the step before; leave it out",
+    ("CLOAD", "SECTOR"): "cyclic symmetry is not part of this version",
+    ("DLOAD", "SECTOR"): "cyclic symmetry is not part of this version",
     ("PLASTIC", "EXTRAPOLATION"): "the last yield stress of a table holds beyond it; add a row",
     ("CLEARANCE", "TABULAR"): "give one VALUE",
     ("TIE", "CYCLICSYMMETRY"): "cyclic symmetry is not part of this version",
@@ -226,6 +226,15 @@ WITHOUT_EFFECT: dict[tuple[str, str], str] = {
     ("MASS", "COMPOSITE"): "0",
     ("ROTARYINERTIA", "ALPHA"): "0",
     ("PLASTIC", "EXTRAPOLATION"): "CONSTANT",
+    ("PLASTIC", "SCALESTRESS"): "1",
+    ("MASS", "TYPE"): "ISOTROPIC",
+    ("MODALDYNAMIC", "CONTINUE"): "NO",
+    ("CLOAD", "SECTOR"): "1",
+    ("DLOAD", "SECTOR"): "1",
+    **{
+        (keyword, "DEPENDENCIES"): "0"
+        for keyword in ("ELASTIC", "DENSITY", "EXPANSION", "PLASTIC", "CYCLICHARDENING", *LAWS)
+    },
     ("RATEDEPENDENT", "EXTRAPOLATION"): "CONSTANT",
 }
 

@@ -103,6 +103,8 @@ class ContactTerm(Term):
         self.time = 0.0
         self.notes: list[str] = []
         self.damped = self.nodal = np.zeros(0)
+        #: Force of pairs that ended with the step, at its start; empty for none.
+        self.fading = np.zeros(0)
         #: Whether stabilizing damping acts; not on paths, which have no time.
         self.damps, self.persistent = True, False
         #: Weight of the end of an increment in the forces of pressure laws, and their force at its
@@ -207,8 +209,8 @@ class ContactTerm(Term):
         self.first = min(step.first_increment, step.period) if stays else 0.0
         scheme = getattr(step, "scheme", "")
         self.persistent = scheme == "energy_momentum"
-        if self.number == 1 and self.pairs:
-            self._start(scheme == "central_difference")
+        self._check_pairs(step, scheme)
+        self._enter(scheme == "central_difference", bool(getattr(step, "ramp", False)))
         if self._stiff:
             self._damp()
         system: Any = self.system  # the equations, with their supports
@@ -228,6 +230,39 @@ class ContactTerm(Term):
             self._share_law(scheme, step)
         self._keep_law_force()
 
+    def _check_pairs(self, step: Step, scheme: str) -> None:
+        """Refuse pairs whose conditions a step does not have."""
+        for pair in self.pairs:
+            limited = pair.shear_limit < np.inf
+            adheres = not pair.tied and not pair.separates
+            path = getattr(step, "path", None) is not None
+            other = scheme in ("central_difference", "energy_momentum")
+            if (limited or adheres) and (path or other):
+                what = "that do not separate" if adheres else "with a largest shear traction"
+                how = "path control" if path else f"scheme={scheme!r}"
+                raise UnsupportedError(
+                    f"contact pair {pair.name!r}: surfaces {what} are not part of {how}; use "
+                    "static steps under loads, or implicit ones",
+                    pair.item.where,
+                )
+
+    def _enter(self, explicit: bool, ramp: bool) -> None:
+        """Let pairs begin and end with the step; what those that end pressed fades."""
+        self.fading = np.zeros(0)
+        for pair, (p, q) in zip(self.pairs, self.parts(self.committed), strict=True):
+            steps = None if isinstance(pair.item, Tie) else pair.item.steps
+            before, pair.active = pair.active, steps is None or self.number in steps
+            if pair.active and (self.number == 1 or not before):
+                pair.entered = self.number
+                self._start_pair(pair, self.positions(self.u), explicit)
+            elif before and not pair.active and self.at is not None and (p.any() or q.any()):
+                terms = self.at.acting[self.pairs.index(pair)]
+                force = np.zeros(self.system.n_dofs)
+                pair.add_forces(terms, self.dofs(terms.variables), p, q, force, None)
+                fading = self.system.at_nodes(force)
+                if self.damps and ramp:
+                    self.fading = self.fading + fading if len(self.fading) else fading
+
     def _share_law(self, scheme: str, step: Step) -> None:
         """Weigh laws of pressure as the time scheme weighs forces."""
         from corota.model.schemes import SCHEMES
@@ -235,62 +270,62 @@ class ContactTerm(Term):
         if scheme in SCHEMES:
             self.law_share -= SCHEMES[scheme](step.alpha, step.rho_inf).alpha_f  # type: ignore[attr-defined]
 
-    def _start(self, explicit: bool) -> None:
-        """Check the initial gaps: report, adjust or ramp them."""
-        x = self.positions(self.u)
-        for pair in self.pairs:
-            item = pair.item
-            if isinstance(item, Tie):
-                self._start_tie(pair, x)
-                continue
-            check_side(self.system, pair, x)
-            if pair.slave.pointwise:
-                self._keep_sides(pair, x)
-            mesh = self.system.model.mesh
-            found = fillet_note(pair), corner_note(pair, mesh.points, mesh.node_labels)
-            self.notes += filter(None, found)
-            pair.core.search(x)
-            raw = pair.core.evaluate(x, x)
-            area = raw["total_area"]
-            seen = area > COVERED * pair.full
-            gap = np.where(seen, raw["total_gap"] / np.where(seen, area, 1.0), 0.0)
-            if item.clearance is not None:
-                pair.core.offset = np.where(seen, gap - item.clearance, 0.0)
-                gap = np.where(seen, item.clearance, 0.0)
-            pair.overlap = np.minimum(gap, 0.0)
-            pair.base = pair.core.offset
-            pair.area = np.where(seen, area, pair.full)
-            adjusted = item.start == "adjust"
-            moved = np.full(len(gap), adjusted)
-            if adjusted and item.adjust_nodes is not None:
-                moved = np.isin(pair.nodes, mesh.node_indices(item.adjust_nodes))
-            deepest = int(np.argmin(gap))
-            longest = float(pair.slave.length.max())
-            if gap[deepest] < -1e-9 * longest:
-                how = {
-                    "keep": "remains until the contact opens "
-                    "(start='ramp' removes it over the step)"
-                    if explicit
-                    else "is removed in the first increment (start='ramp' removes it over the "
-                    "step, start='adjust' treats it as in contact)",
-                    "adjust": "is treated as in contact without strain",
-                    "ramp": "is removed over the first step",
-                }["keep" if adjusted and not moved[deepest] else item.start]
-                label = self.system.model.mesh.node_labels[pair.nodes[deepest]]
-                half = float(np.max(pair.slave.half, initial=0.0))
-                lines = f" (the surface is {half:.4g} away from the line)" if half else ""
-                self.notes.append(
-                    f"contact pair {pair.name!r}: the surfaces overlap by up to "
-                    f"{-gap[deepest]:.4g} at node {label} at the start{lines}; this {how}"
-                )
-            if adjusted:
-                within = seen & (gap <= item.adjust)
-                if item.adjust_nodes is not None:
-                    within = seen & moved
-                near = np.where(within, np.maximum(gap, 0.0), 0.0)
-                pair.core.offset = pair.core.offset + np.where(moved, pair.overlap, 0.0) + near
-            adjusted_gap = gap - (pair.core.offset - pair.base)
-            pair.first_gap = np.where(seen, adjusted_gap, pair.reach)
+    def _start_pair(self, pair: Pair, x: Floats, explicit: bool) -> None:
+        """Check the initial gaps of a pair: report, adjust or ramp them."""
+        item = pair.item
+        if isinstance(item, Tie):
+            self._start_tie(pair, x)
+            return
+        check_side(self.system, pair, x)
+        if pair.slave.pointwise:
+            self._keep_sides(pair, x)
+        mesh = self.system.model.mesh
+        found = fillet_note(pair), corner_note(pair, mesh.points, mesh.node_labels)
+        self.notes += filter(None, found)
+        pair.core.search(x)
+        raw = pair.core.evaluate(x, x)
+        area = raw["total_area"]
+        seen = area > COVERED * pair.full
+        gap = np.where(seen, raw["total_gap"] / np.where(seen, area, 1.0), 0.0)
+        if item.clearance is not None:
+            pair.core.offset = np.where(seen, gap - item.clearance, 0.0)
+            gap = np.where(seen, item.clearance, 0.0)
+        pair.overlap = np.minimum(gap, 0.0)
+        pair.base = pair.core.offset
+        pair.area = np.where(seen, area, pair.full)
+        adjusted = item.start == "adjust"
+        moved = np.full(len(gap), adjusted)
+        if adjusted and item.adjust_nodes is not None:
+            moved = np.isin(pair.nodes, mesh.node_indices(item.adjust_nodes))
+        deepest = int(np.argmin(gap))
+        longest = float(pair.slave.length.max())
+        if gap[deepest] < -1e-9 * longest:
+            how = {
+                "keep": "remains until the contact opens (start='ramp' removes it over the step)"
+                if explicit
+                else "is removed in the first increment (start='ramp' removes it over the "
+                "step, start='adjust' treats it as in contact)",
+                "adjust": "is treated as in contact without strain",
+                "ramp": "is removed over the first step",
+            }["keep" if adjusted and not moved[deepest] else item.start]
+            label = self.system.model.mesh.node_labels[pair.nodes[deepest]]
+            half = float(np.max(pair.slave.half, initial=0.0))
+            lines = f" (the surface is {half:.4g} away from the line)" if half else ""
+            self.notes.append(
+                f"contact pair {pair.name!r}: the surfaces overlap by up to "
+                f"{-gap[deepest]:.4g} at node {label} at the start{lines}; this {how}"
+            )
+        if adjusted:
+            within = seen & (gap <= item.adjust)
+            if item.adjust_nodes is not None:
+                within = seen & moved
+            near = np.where(within, np.maximum(gap, 0.0), 0.0)
+            pair.core.offset = pair.core.offset + np.where(moved, pair.overlap, 0.0) + near
+        adjusted_gap = gap - (pair.core.offset - pair.base)
+        pair.first_gap = np.where(seen, adjusted_gap, pair.reach)
+        if not pair.separates:
+            # What touches at the start has met.
+            pair.closed = seen & (adjusted_gap <= pair.noise)
 
     def _keep_sides(self, pair: Pair, x: Floats) -> None:
         """Lines keep the side that the other body is on at the start."""
@@ -393,6 +428,8 @@ class ContactTerm(Term):
             pair.add_forces(acting, where, self.share(pair) * p, q, force, size)
         damping = self._damping(step_time)
         state = ContactState(found, system.at_nodes(force), size, multipliers, damping)
+        if len(self.fading):
+            state.force = state.force + max(1.0 - step_time / self.period, 0.0) * self.fading
         if len(self.law_force):
             now = self._forces_of_laws(found, multipliers)
             state.of_end = state.force + (1.0 - self.law_share) * now
@@ -438,7 +475,7 @@ class ContactTerm(Term):
     def offset_at(self, pair: Pair, step_time: float) -> Floats:
         """Offsets of the gaps of a pair at a time of the step, shape (n,)."""
         item = pair.item
-        if isinstance(item, ContactPair) and self.number <= 1:
+        if isinstance(item, ContactPair) and self.number == pair.entered:
             # A first increment that is cut removes its part.
             period = {"ramp": self.period, "keep": self.first}.get(item.start, 0.0)
             if period > 0.0:

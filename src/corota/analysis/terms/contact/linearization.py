@@ -40,7 +40,7 @@ def linearized(
     parts = term.parts(at.multipliers)
     for pair, terms, (p, q), state in zip(term.pairs, at.terms, parts, states, strict=True):
         first, second, end = pair.first, pair.first + pair.n, pair.first + pair.width
-        dp, rp, dq, rq, ratio = pair.rows(terms, state, p, q, slip_directions[first])
+        dp, rp, dq, rq, ratio, level = pair.rows(terms, state, p, q, slip_directions[first])
         closed, sticks, share = state != OPEN, state == CLOSED, term.share(pair)
         diagonal[first:second], rhs[first:second] = share * dp, share * rp
         expected += int(closed.sum())
@@ -70,12 +70,12 @@ def linearized(
             diagonal[second:end], rhs[second:end] = dq, rq
             expected += int(sticks.sum())
             columns("slip_gradient", second, sticks)
-            shear = np.where(sticks, 0.0, ratio * p - q)
+            shear = np.where(sticks, 0.0, ratio * p + level - q)
             k = acting.constraint
             slope = -ratio[k, None] * acting.slip_gradient
             follow.append(border(to_acting, first + k, slope, state[k] == SLIPPING))
         pair.add_forces(acting, to_acting, known, shear, force, None)
-        if term.system.nlgeom and (p.any() or q.any()):
+        if pair.active and term.system.nlgeom and (p.any() or q.any()):
             # Half way an end moves by half.
             half = 1.0 if acting is terms else 0.5
             even, odd = second_derivatives(term, pair, half * share * p, half * q)

@@ -89,7 +89,8 @@ def gives_way(contact_term: ContactTerm) -> str:
         total = float(force.sum())
         if pair.tied or not total > 0.0:
             continue
-        if pair.friction and float(np.abs(q * terms.area).sum()) > WHOLE * pair.friction * total:
+        bound = float((pair.bound(np.maximum(p, 0.0)) * terms.area).sum())
+        if pair.friction and float(np.abs(q * terms.area).sum()) > WHOLE * bound:
             return (
                 f"friction of contact pair {pair.name!r} is used up: a body that it alone holds "
                 "slides"

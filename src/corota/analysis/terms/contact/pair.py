@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
-    Constraints = tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats | None]
+    Bools = NDArray[np.bool_]
+    Constraints = tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats | None, Bools | None]
 
 #: Deformations below this fraction of the model's size are rounding.
 NONE = 1e-8
@@ -35,6 +36,8 @@ WEAK = 0.2
 #: And that above which it takes it back for good.
 AMPLE = 0.5
 EPS = float(np.finfo(float).eps)
+#: Variables of a term, as in the core.
+WIDTH = 20
 
 
 class Pair:
@@ -67,6 +70,13 @@ class Pair:
         self.tied = isinstance(item, Tie)
         self.friction = 0.0 if isinstance(item, Tie) else item.friction
         self.law = None if isinstance(item, Tie) else item.law
+        #: Largest shear traction of friction [force/length^2].
+        limit = None if isinstance(item, Tie) else item.shear_limit
+        self.shear_limit = np.inf if limit is None else limit
+        #: Whether what is closed may open again.
+        self.separates = isinstance(item, ContactPair) and item.separates
+        #: Whether it acts in the step, and the number of the step in which it began to.
+        self.active, self.entered = True, 0
         build: Any = tie_core if self.tied else contact_core
         self.core, self.slave, self.master, self.reach, self.depth = build(system, item)
         self.nodes = np.asarray(self.core.nodes, np.int64)
@@ -120,7 +130,9 @@ class Pair:
         if self.tied:
             return _core.ContactLaw.joined(noise=self.noise)
         kind, pressure, overclosure = ("hard", [], []) if self.law is None else self.law.constants
-        along = ("coulomb", [self.friction]) if self.friction else ("frictionless", [])
+        along = ("coulomb", [self.friction, self.shear_limit])
+        if not self.friction:
+            along = ("frictionless", [])
         return _core.ContactLaw(kind, pressure, overclosure, *along, noise=self.noise)
 
     # -- evaluation --------------------------------------------------------------------
@@ -135,6 +147,8 @@ class Pair:
 
         The gradients of an increment are not made if no traction `acts` and none can.
         """
+        if not self.active:
+            return self._nothing()
         if not nlgeom:
             return self._since(self._linear(x, old))
         before = old if self.friction else None
@@ -195,6 +209,13 @@ class Pair:
         met[self.surface[closed]] = True
         out: NDArray[np.bool_] = ~met[self.surface]
         return out
+
+    def _nothing(self) -> Terms:
+        """Terms of a step in which the surfaces do not meet."""
+        none, flat = np.zeros(self.n), np.zeros(0, np.int64)
+        variables = np.zeros((0, WIDTH), np.int64)
+        gradient = np.zeros((0, WIDTH))
+        return Terms(none, none, none, flat, flat, variables, gradient, gradient, (none, none))
 
     def _since(self, terms: Terms) -> Terms:
         """Gaps of the persistency condition (Laursen & Chawla 1997).
@@ -342,7 +363,16 @@ class Pair:
         """The constraints as arrays, as the law takes them."""
         begin = None if self.start is None or self.law is None else self.gap_of_start()
         own = self.full, self.area, self.stiffness
-        return terms.gap, terms.slip, terms.area, *own, begin
+        return terms.gap, terms.slip, terms.area, *own, begin, self.adhering
+
+    @property
+    def adhering(self) -> Bools | None:
+        """Constraints that do not open: those of surfaces that do not separate and had met."""
+        if self.separates or self.tied:
+            return None
+        found: Bools = self.closed.copy()
+        found[self.of_surfaces :] = False  # a corner leaves what it slides off
+        return found
 
     def trial(self, terms: Terms, p: Floats) -> tuple[Floats, Floats]:
         """Gap [length] and trial pressure of each constraint; not covered: infinitely open."""
@@ -357,6 +387,10 @@ class Pair:
         decides.
         """
         found: NDArray[np.int8] = self.conditions.states(self._at(terms), p, q, last)
+        adhering = self.adhering
+        if adhering is not None and self.friction:
+            # Under tension there is no friction, whichever way the surfaces slide.
+            found[adhering & (found == CLOSED) & (p <= 0.0)] = SLIPPING
         if len(self.corners):
             # Where the constraints of the surfaces keep a corner out, it has nothing to do.
             was = p > 0.0 if last is None else last != OPEN
@@ -390,15 +424,16 @@ class Pair:
 
     def rows(
         self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats, slip_direction: Floats
-    ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+    ) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """The linearized constraints: diagonals and right-hand sides of p and q, and the slope.
 
         A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone.
 
         Returns
         -------
-        diagonal_p, rhs_p, diagonal_q, rhs_q, follow : ndarray, shape (n,)
-            ``follow`` is dq / dp of slipping rows; without shear tractions it is zero.
+        diagonal_p, rhs_p, diagonal_q, rhs_q, follow, level : ndarray, shape (n,)
+            ``follow`` is dq / dp of slipping rows, ``level`` their q at no pressure; without shear
+            tractions they are zero.
         """
         found = self.conditions.rows(self._at(terms), p, q, state, slip_direction)
         backed = self.backed(terms, state)
@@ -436,6 +471,10 @@ class Pair:
         gap, slip = terms.gap_gradient, terms.slip_gradient
         shear = q if self.two else None
         _core.add_contact_forces(terms.constraint, dofs, gap, slip, p, shear, force, size)
+
+    def bound(self, p: Floats) -> Floats:
+        """Largest shear traction under pressures."""
+        return np.minimum(self.friction * p, self.shear_limit)
 
     # -- increments --------------------------------------------------------------------
 

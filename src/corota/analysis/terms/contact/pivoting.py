@@ -108,7 +108,7 @@ class Pivoting:
     def _able(self, k: int) -> NDArray[np.bool_]:
         """Constraints that may change their state."""
         pair, terms, _ = self.pairs[k]
-        if pair.tied or pair.law is not None:
+        if pair.tied or pair.law is not None or pair.shear_limit < np.inf or not pair.separates:
             return np.zeros(pair.n, bool)
         able: NDArray[np.bool_] = (terms.area > COVERED * pair.full) & np.isfinite(pair.stiffness)
         return able
@@ -383,9 +383,7 @@ class Pivoting:
                     mine[c.rows] = False
             for i in np.flatnonzero(mine & (base[k] != CLOSED)).tolist():
                 p1 = p[i] + traction[pair.first + i]
-                follow = (
-                    pair.friction * slip_directions[k][i] * p1 if base[k][i] == SLIPPING else 0.0
-                )
+                follow = slip_directions[k][i] * pair.bound(p1) if base[k][i] == SLIPPING else 0.0
                 traction[pair.first + pair.n + i] = follow - q[i]
         return out, slip_direction
 

@@ -80,9 +80,10 @@ def columns(
     for (pair, terms, (p, q)), state in zip(problem.pairs(at.contact_state), states, strict=True):
         if pair.two:
             # Slipping tractions follow the pressure; they are no unknowns of the solution.
-            ratio = pair.rows(terms, state, p, q, problem.slip_directions[pair.first])[4]
+            rows = pair.rows(terms, state, p, q, problem.slip_directions[pair.first])
+            ratio, level = rows[4:]
             now = np.outer(p, right_sides.own) + dp[pair.first : pair.first + pair.n]
-            new = ratio[:, None] * now - np.outer(q, right_sides.own)
+            new = ratio[:, None] * now - np.outer(q - level, right_sides.own)
             slips = state != CLOSED
             dp[pair.first + pair.n : pair.first + pair.width][slips] = new[slips]
     return np.concatenate([du, dp]), negative
@@ -140,9 +141,7 @@ def let_slip(
                 continue
             p1 = p + found[1][pair.first : pair.first + pair.n, 0]
             q1 = q + found[1][pair.first + pair.n : pair.first + pair.width, 0]
-            over = (s == CLOSED) & (
-                np.abs(q1) > FRICTION_EXCESS * pair.friction * np.maximum(p1, p)
-            )
+            over = (s == CLOSED) & (np.abs(q1) > FRICTION_EXCESS * pair.bound(np.maximum(p1, p)))
             s[over] = SLIPPING
             slip_direction = problem.slip_directions[pair.first]
             slip_directions[pair.first] = np.where(

@@ -114,6 +114,9 @@ class _Builder:
                 adjust=pair.adjust,
                 adjust_nodes=self._adjusted(pair),
                 smooth=smooth,
+                shear_limit=interaction.shear_limit if interaction.friction else None,
+                separates=interaction.separates,
+                steps=pair.acts(len(self.deck.steps)),
             )
         )
 

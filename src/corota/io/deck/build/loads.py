@@ -228,7 +228,10 @@ class LoadBuilder:
             )
             if edges is None or not len(edges):
                 return None  # the side of a quadrilateral that is one node
-            return EdgeLoad(edges, "pressure", draft.value, amplitude, where=where)
+            of_edges: Literal["pressure", "hydrostatic pressure"] = (
+                "pressure" if len(draft.value) == 1 else "hydrostatic pressure"
+            )
+            return EdgeLoad(edges, of_edges, draft.value, amplitude, where=where)
         full = self.sets.full_name(self.sets.elsets, root, draft.target)
         name = self.sets.spelled(self.sets.elsets, full) if full else ""
         masses = self.deck.masses

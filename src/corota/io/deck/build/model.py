@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from corota.model.steps import Step
 
 # Parts that few decks have.
+add_nonstructural = lazy("corota.io.deck.build.nonstructural:add_nonstructural")
 base_supports = lazy("corota.io.deck.build.base_motion:base_supports")
 build_attachments = lazy("corota.io.deck.cards.attachments:build_attachments")
 build_contacts = lazy("corota.io.deck.build.contact:build_contacts")
@@ -67,6 +68,8 @@ class ModelBuilder:
             self.deck.amplitudes[name] = curve.sampled(until)
         SectionBuilder(targets).build()
         model, deck = self.model, self.deck
+        if deck.nonstructural:
+            add_nonstructural(targets)
         for tie in deck.ties:
             for view in views_in(self.meshes.views, deck, tie.card.scope):
                 targets.at = view

@@ -68,6 +68,9 @@ def _build(
     if tie.kind == "straight":
         _straight(deck, model, find, tie)
         return
+    if tie.kind == "between":
+        _between(deck, model, find, rotating, tie)
+        return
     if tie.kind == "same":
         _same(model, find, rotating, tie)
         return
@@ -182,6 +185,28 @@ def _straight(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
         return
     ends = int(nodes[0]), int(nodes[1])
     model.constraints.append(StraightLine(nodes[2:], *ends, tie.where))
+
+
+def _between(
+    deck: Deck, model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft
+) -> None:
+    """Dofs of a node by linear interpolation between two others, from its place between them."""
+    found = [single_node(deck, find, term, model) for term in tie.terms]
+    if None in found:
+        return
+    if len(found) != 3:
+        raise InputError(f"three nodes are expected, not {len(found)}", tie.where)
+    node, first, second = cast("list[int]", found)
+    x = model.mesh.points[[node, first, second]]
+    way = x[2] - x[1]
+    length = float(way @ way)
+    if length == 0.0:
+        raise InputError("the two nodes to interpolate between are at one place", tie.where)
+    share = float((x[0] - x[1]) @ way) / length
+    turns = rotating[[node, first, second]].all()
+    for dof in range(3 if turns else 2):
+        terms = [(node, dof, 1.0), (first, dof, share - 1.0), (second, dof, -share)]
+        model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
 def _same(model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft) -> None:

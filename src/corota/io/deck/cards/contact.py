@@ -12,6 +12,7 @@ from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
 from corota.io.deck.drafts import GeneralDraft, InteractionDraft, PairDraft
 from corota.io.deck.lexer import key
+from corota.model.contact import MOST_FRICTION
 
 if TYPE_CHECKING:
     from corota.errors import Location
@@ -251,6 +252,15 @@ def surface_behavior(deck: Deck, card: Card) -> None:
     if into is None:
         return
     into.law, into.law_where = law, card.where
+    if card.has("NOSEPARATION"):
+        into.separates = False
+        if law != "HARD":
+            deck.error(
+                card,
+                card.at("NOSEPARATION"),
+                "surfaces that do not separate are in hard contact",
+                hint="leave PRESSURE-OVERCLOSURE out",
+            )
     if law in ("HARD", "TIED"):
         if rows:
             what = "nothing penetrates" if law == "HARD" else "the surfaces are joined exactly"
@@ -287,10 +297,18 @@ def surface_behavior(deck: Deck, card: Card) -> None:
 
 
 def friction(deck: Deck, card: Card) -> None:
-    """``*FRICTION``: coefficient, stick slope."""
+    """``*FRICTION``: coefficient, stick slope; ``ROUGH``: what touches does not slide."""
     into = _open(deck, card)
     rows = list(card.rows())
-    if into is None or card.has("ROUGH"):
+    if into is None:
+        return
+    if card.has("TAUMAX"):
+        limit = deck.parameter_number(card, "TAUMAX", math.inf, 0.0)
+        if limit == 0.0:
+            deck.error(card, card.at("TAUMAX"), "the largest shear traction must be > 0")
+        into.shear_limit = limit or None
+    if card.has("ROUGH"):
+        into.friction = MOST_FRICTION
         return
     if len(rows) != 1:
         deck.error(card, card.where, f"one data line is expected, found {len(rows)}")
@@ -305,6 +323,30 @@ def friction(deck: Deck, card: Card) -> None:
     into.friction = mu
     if any(row.fields[1:]):
         deck.note(f"{row.at(1)}: {card.spelled}: no stick slope is needed: sticking is exact")
+
+
+def model_change(deck: Deck, card: Card) -> None:
+    """``*MODEL CHANGE, TYPE=CONTACT PAIR, ADD or REMOVE``: slave, master."""
+    kind = deck.choice(card, "TYPE", ("CONTACTPAIR", "ELEMENT"), "ELEMENT")
+    if kind == "ELEMENT":
+        deck.error(
+            card,
+            card.where,
+            "elements are not removed and added in steps",
+            hint="TYPE=CONTACT PAIR is supported; solve the parts in models of their own",
+        )
+        return
+    added, removed = (card.has(name) for name in ("ADD", "REMOVE"))
+    if added == removed:
+        deck.error(card, card.where, "either ADD or REMOVE is expected")
+        return
+    if deck.step is None:
+        deck.error(card, card.where, "the card belongs in a step")
+        return
+    for row in _pair_rows(deck, card):
+        slave, master = row.get(0), row.get(1) or row.get(0)
+        for pair in _named_pairs(deck, card, slave, master, True, row.where):
+            pair.changes[len(deck.steps)] = added
 
 
 def clearance(deck: Deck, card: Card) -> None:

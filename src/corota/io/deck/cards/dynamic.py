@@ -131,11 +131,14 @@ def complex_frequency(deck: Deck, card: Card) -> None:
     """``*COMPLEX FREQUENCY[, CORIOLIS]``: the number of modes, with damping and Coriolis forces."""
     frequency(deck, card)
     if deck.step is not None and deck.step.make is Frequency:
-        deck.step.options.update(complex_modes=True, rayleigh=deck.damping)
+        whole = {"lowest": 0.0, "highest": math.inf}
+        if any(deck.step.options[name] != value for name, value in whole.items()):
+            deck.note(f"{card.where}: {card.spelled}: the range of frequencies is ignored")
+        deck.step.options.update(complex_modes=True, rayleigh=deck.damping, **whole)
 
 
 def frequency(deck: Deck, card: Card) -> None:
-    """``*FREQUENCY``: the number of modes."""
+    """``*FREQUENCY``: the number of modes, the lowest and the highest frequency."""
     now = _procedure(deck, card)
     if now is None:
         return
@@ -143,15 +146,17 @@ def frequency(deck: Deck, card: Card) -> None:
     if not rows:
         deck.error(card, card.where, "a data line with the number of modes is missing")
         return
-    count = deck.integer(card, rows[0], 0, "the number of modes")
-    if count is None:
+    row = rows[0]
+    count = deck.integer(card, row, 0, "the number of modes", 0 if row.get(2) else None)
+    low = deck.real(card, row, 1, "the lowest frequency", 0.0)
+    high = deck.real(card, row, 2, "the highest frequency", math.inf)
+    if count is None or low is None or high is None:
         return
-    if count < 1:
-        deck.row_error(card, rows[0], 0, f"at least one mode is needed, not {count}")
+    if count < 1 and row.get(0):
+        deck.row_error(card, row, 0, f"at least one mode is needed, not {count}")
         return
-    if any(rows[0].get(i) for i in (1, 2)):
-        deck.notes.append(f"{card.where}: the range of frequencies of *FREQUENCY is ignored")
-    now.make, now.options = Frequency, {"modes": count}
+    # Abaqus takes squares below zero as well, so that a free motion is among the modes.
+    now.make, now.options = Frequency, {"modes": count, "lowest": max(low, 0.0), "highest": high}
     now.preload = keeps_preload(deck, card, now)
 
 

@@ -120,14 +120,22 @@ def beam_section(deck: Deck, card: Card) -> None:
     if normal is None:
         return
     row = rows[0]
+    sizes = _sizes(deck, card, row, kind)
+    if sizes is None:
+        return
+    profile = _profile(deck, card, row, kind, sizes, normal)
+    if elset and material and profile is not None:
+        deck.scope.lines.append(_beam(card, elset, kind, profile, material))
+
+
+def _sizes(deck: Deck, card: Card, row: Row, kind: str) -> list[float] | None:
+    """Sizes of a cross-section; ``None`` after an error."""
     names = SIZES[kind]
     if kind == "CIRC" and not row.get(1) and deck.dialect == "abaqus":
         deck.note(f"{row.where}: one number of a circle is its radius, as in Abaqus")
         radius = _numbers(deck, card, row, ("the radius",))
-        if radius is None:
-            return
-        sizes: list[float] | None = [2.0 * radius[0], 2.0 * radius[0]]
-    elif kind == "CIRC" and not row.get(1):
+        return None if radius is None else [2.0 * radius[0], 2.0 * radius[0]]
+    if kind == "CIRC" and not row.get(1):
         deck.row_error(
             card,
             row,
@@ -135,29 +143,32 @@ def beam_section(deck: Deck, card: Card) -> None:
             "one number is the radius in Abaqus and the diameter in CalculiX",
             "give both diameters: d, d",
         )
-        return
-    else:
-        deck.extra_fields(card, row, len(names))
-        sizes = _numbers(deck, card, row, names)
-    if sizes is None:
-        return
-    profile = _profile(deck, card, row, kind, sizes, normal)
-    if elset and material and profile is not None:
-        numbers = (profile.area, profile.inertia, profile.shear_area)
+        return None
+    deck.extra_fields(card, row, len(names))
+    return _numbers(deck, card, row, names)
+
+
+def _beam(
+    card: Card,
+    elset: str,
+    kind: str,
+    profile: Profile,
+    material: str = "",
+    elastic: Elastic | None = None,
+) -> LineDraft:
+    """Section of a beam with a cross-section of known shape."""
+    return LineDraft(
+        "beam",
+        card,
+        elset,
+        material,
+        elastic,
+        profile=(profile.area, profile.inertia, profile.shear_area),
+        fibers=profile.rows,
         # The height of a rectangle follows from its numbers.
-        height = 0.0 if kind == "RECT" else profile.height
-        fiber = profile.fiber if kind in ("RECT", "CIRC", "PIPE") else 0.0
-        draft = LineDraft(
-            "beam",
-            card,
-            elset,
-            material,
-            profile=numbers,
-            fibers=profile.rows,
-            height=height,
-            fiber=fiber,
-        )
-        deck.scope.lines.append(draft)
+        height=0.0 if kind == "RECT" else profile.height,
+        fiber=profile.fiber if kind in ("RECT", "CIRC", "PIPE") else 0.0,
+    )
 
 
 def _profile(
@@ -217,9 +228,9 @@ def _profile(
 
 
 def beam_general_section(deck: Deck, card: Card) -> None:
-    """``*BEAM GENERAL SECTION``: area, I11, I12, I22, J; first axis; E, G."""
+    """``*BEAM GENERAL SECTION``: area, I11, I12, I22, J, or sizes; first axis; E, G."""
     elset = deck.required(card, "ELSET")
-    deck.choice(card, "SECTION", ("GENERAL",), "GENERAL")
+    kind = deck.choice(card, "SECTION", ("GENERAL", *SIZES), "GENERAL")
     rho = deck.parameter_number(card, "DENSITY", 0.0, 0.0)
     rows = _common(deck, card, 3)
     if rows is None:
@@ -228,10 +239,27 @@ def beam_general_section(deck: Deck, card: Card) -> None:
         deck.error(
             card,
             card.where,
-            "three lines are expected: area, I11, I12, I22, J; the first axis; E, G",
+            "three lines are expected: area, I11, I12, I22, J, or the sizes of the SECTION; the "
+            "first axis; E, G",
         )
         return
     normal = _out_of_plane(deck, card, rows)
+    if kind in SIZES:
+        sizes = _sizes(deck, card, rows[0], kind)
+        pair = _numbers(deck, card, rows[2], ("Young's modulus", "the shear modulus"))
+        if normal is None or sizes is None or pair is None or not elset:
+            return
+        profile = _profile(deck, card, rows[0], kind, sizes, normal)
+        if profile is None:
+            return
+        e, g = pair
+        try:
+            elastic = Elastic(e, 0.5 * e / g - 1.0, rho=rho, where=card.where)
+        except InputError as error:
+            deck.error(card, rows[2].where, error.message)
+            return
+        deck.scope.lines.append(_beam(card, elset, kind, profile, elastic=elastic))
+        return
     area = _numbers(deck, card, rows[0], ("the area",))
     column = 3 if normal == 0.0 else 1
     inertia = deck.real(card, rows[0], column, "the second moment of area")

@@ -20,12 +20,11 @@ if TYPE_CHECKING:
     from corota.io.deck.lexer import Card, Row
 
 
-_FACE = r"P(\d{1,9})\Z"
+_FACE = r"(H?P)(\d{1,9})\Z"
 _TRACTION = r"(TRVEC|TRSHR)(\d{1,9})\Z"
 #: Loads of other programs, and what to give instead.
 _OTHER_LOADS = (
     (r"(PZ|BZ)\Z", "a planar model takes no load out of its plane"),
-    (r"HP\d?\Z", "give each edge its mean pressure: P1 to P4, or P on surfaces"),
     (r"(P\d?|[BP][XY]|TRVEC\d?|TRSHR\d?)NU\Z", "no user subroutine is called: give values"),
     (r"(ROTA|CORIO)\Z", "rotate the base by *BOUNDARY, or give BX and BY"),
     (
@@ -73,7 +72,7 @@ def dload(deck: Deck, card: Card) -> None:
         label = key(row.get(1))
         face = re.match(_FACE, label, re.ASCII)
         if face:
-            _pressure(deck, card, row, int(face.group(1)), now)
+            _pressure(deck, card, row, int(face.group(2)), now, face.group(1))
         elif label == "GRAV":
             _gravity(deck, card, row, now)
         elif label == "CENTRIF":
@@ -83,7 +82,8 @@ def dload(deck: Deck, card: Card) -> None:
         elif traction := re.match(_TRACTION, label, re.ASCII):
             _edge_traction(deck, card, row, traction.group(1), int(traction.group(2)), now)
         else:
-            known = "expected P1 to P4, TRVEC1 to 4, TRSHR1 to 4, BX, BY, PX, PY, GRAV or CENTRIF"
+            faces = "P1 to P4, HP1 to 4, TRVEC1 to 4, TRSHR1 to 4"
+            known = f"expected {faces}, BX, BY, PX, PY, GRAV or CENTRIF"
             why = next((text for rule, text in _OTHER_LOADS if re.match(rule, label)), "")
             deck.row_error(
                 card,
@@ -123,16 +123,31 @@ def _edge_traction(deck: Deck, card: Card, row: Row, label: str, face: int, now:
             now.loads.append(draft)
 
 
-def _pressure(deck: Deck, card: Card, row: Row, face: int, now: StepDraft) -> None:
-    deck.extra_fields(card, row, 3)
-    value = deck.real(card, row, 2, "the pressure")
+def _pressure_values(deck: Deck, card: Card, row: Row, label: str) -> tuple[float, ...] | None:
+    """Pressure of ``P``; of ``HP`` the pressure, the height of its level, that where it acts."""
+    names = ("the pressure", "the height of the level", "the height at which the pressure acts")
+    count = 1 if label == "P" else 3
+    deck.extra_fields(card, row, 2 + count)
+    values = [deck.real(card, row, 2 + i, name) for i, name in enumerate(names[:count])]
+    if None in values:
+        return None
+    if count == 3 and values[1] == values[2]:
+        deck.row_error(card, row, 4, "both heights are the same")
+        return None
+    return tuple(float(v or 0.0) for v in values)
+
+
+def _pressure(
+    deck: Deck, card: Card, row: Row, face: int, now: StepDraft, label: str = "P"
+) -> None:
+    value = _pressure_values(deck, card, row, label)
     if not 1 <= face <= 4:
         deck.row_error(card, row, 1, f"face P{face} does not exist; expected P1 to P4")
     elif not row.get(0):
         deck.row_error(card, row, 0, "an element number or a set is missing")
     elif value is not None:
         now.loads.append(
-            Draft("pressure", card, row, row.get(0), (value,), face - 1, card.value("AMPLITUDE"))
+            Draft("pressure", card, row, row.get(0), value, face - 1, card.value("AMPLITUDE"))
         )
 
 
@@ -177,20 +192,18 @@ def _centrifugal(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
 
 
 def dsload(deck: Deck, card: Card) -> None:
-    """``*DSLOAD``: surface, ``P``, pressure; or ``TRVEC`` or ``TRSHR``, size, direction."""
+    """``*DSLOAD``: surface, ``P``, ``HP``, pressure; or ``TRVEC``, ``TRSHR``, size, direction."""
     now = loads_of(deck, card, "distributed")
     if now is None:
         return
     for row in card.rows():
         label = key(row.get(1))
-        if label == "P":
-            value = deck.real(card, row, 2, "the size of the load")
-            deck.extra_fields(card, row, 3)
+        if label in ("P", "HP"):
+            value = _pressure_values(deck, card, row, label)
             if value is not None:
+                kind = "surface pressure" if label == "P" else "surface hydrostatic pressure"
                 amplitude = card.value("AMPLITUDE")
-                now.loads.append(
-                    Draft("surface pressure", card, row, row.get(0), (value,), -1, amplitude)
-                )
+                now.loads.append(Draft(kind, card, row, row.get(0), value, -1, amplitude))
         elif label in ("TRVEC", "TRSHR"):
             draft = _traction(deck, card, row, label, now)
             if draft is not None:
@@ -198,7 +211,11 @@ def dsload(deck: Deck, card: Card) -> None:
         else:
             why = next((text for rule, text in _OTHER_LOADS if re.match(rule, label)), "")
             deck.row_error(
-                card, row, 1, f"unknown load type {row.get(1)!r}; expected P, TRVEC or TRSHR", why
+                card,
+                row,
+                1,
+                f"unknown load type {row.get(1)!r}; expected P, HP, TRVEC or TRSHR",
+                why,
             )
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from corota.io.deck.drafts import Draft, MaterialDraft, SectionDraft
+from corota.io.deck.drafts import Draft, MaterialDraft, NonstructuralDraft, SectionDraft
 from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
 from corota.model.local_strain import ALIASES, LOCAL_STRAINS, local_strain
@@ -26,6 +26,9 @@ ELASTIC_TYPES = {
     "ENGINEERINGCONSTANTS": "ENGINEERINGCONSTANTS",
     "LAMINA": "LAMINA",
 }
+
+#: Values of ``UNITS=`` of ``*NONSTRUCTURAL MASS``.
+NONSTRUCTURAL = ("TOTALMASS", "MASSPERVOLUME", "MASSPERAREA", "MASSPERLENGTH")
 
 
 def material(deck: Deck, card: Card) -> None:
@@ -226,6 +229,27 @@ def nodal_thickness(deck: Deck, card: Card) -> None:
             deck.row_error(card, row, 1, f"the thickness must be > 0, not {value:g}")
         elif row.get(0):
             deck.thicknesses.append(Draft("thickness", card, row, row.get(0), (value,)))
+
+
+def nonstructural_mass(deck: Deck, card: Card) -> None:
+    """``*NONSTRUCTURAL MASS, ELSET=, UNITS=[, DISTRIBUTION=]``: the mass, or its density."""
+    elset = deck.required(card, "ELSET")
+    units = deck.required(card, "UNITS") and deck.choice(card, "UNITS", NONSTRUCTURAL, "")
+    kinds = ("MASSPROPORTIONAL", "VOLUMEPROPORTIONAL")
+    share = deck.choice(card, "DISTRIBUTION", kinds, kinds[0])
+    rows = list(card.rows())
+    if len(rows) != 1:
+        deck.error(card, card.where, f"one data line is expected: the mass, found {len(rows)}")
+        return
+    deck.extra_fields(card, rows[0], 1)
+    value = deck.real(card, rows[0], 0, "the mass")
+    if value is None or not elset or not units:
+        return
+    if value < 0.0:
+        deck.row_error(card, rows[0], 0, f"a mass must be >= 0, not {value:g}")
+        return
+    by_volume = share == kinds[1]
+    deck.nonstructural.append(NonstructuralDraft(card, rows[0], elset, value, units, by_volume))
 
 
 def shell_section(deck: Deck, card: Card) -> None:

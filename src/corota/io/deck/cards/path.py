@@ -121,7 +121,14 @@ def buckle(deck: Deck, card: Card) -> None:
         if len(rows) > 1:
             deck.row_error(card, rows[1], 0, "one data line is expected")
             return
-    now.make, now.options = Buckle, {"modes": count, "preload": keeps_preload(deck, card, now)}
+    now.make, now.options = (
+        Buckle,
+        {
+            "modes": count,
+            "preload": keeps_preload(deck, card, now),
+            "dead_loads": True,
+        },
+    )
 
 
 def controls(deck: Deck, card: Card) -> None:

@@ -72,13 +72,15 @@ def _temperature(deck: Deck, card: Card, row: Row) -> float | None:
     if not row.get(0):
         deck.row_error(card, row, 0, "a node number or a set is missing")
         return None
+    value = deck.real(card, row, 1, "the temperature")
     for index in range(2, len(row)):
-        if row.get(index):
+        # CAE repeats the temperature for each point of the thickness.
+        if row.get(index) and deck.real(card, row, index, "the temperature") != value:
             deck.row_error(
                 card, row, index, "a temperature gradient through the thickness is not supported"
             )
             return None
-    return deck.real(card, row, 1, "the temperature")
+    return value
 
 
 def initial_temperature(deck: Deck, card: Card) -> None:

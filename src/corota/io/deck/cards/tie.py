@@ -218,8 +218,8 @@ def _kind(deck: Deck, card: Card, kind: str) -> None:
 def mpc(deck: Deck, card: Card) -> None:
     """``*MPC``: ``BEAM``, ``PIN`` or ``TIE`` with two nodes or sets, ``STRAIGHT`` with many.
 
-    ``SLIDER`` is a line whose ends come last. ``PLANE`` holds by itself. Rows that begin with a
-    node continue the one before.
+    ``LINEAR`` is a node between two others, ``SLIDER`` a line whose ends come last. ``PLANE`` holds
+    by itself. Rows that begin with a node continue the one before.
     """
     line: TieDraft | None = None
     for row in card.rows():
@@ -243,14 +243,20 @@ def mpc(deck: Deck, card: Card) -> None:
         if type_ == "PLANE":
             deck.note(f"{row.where}: the nodes of a planar model lie in a plane: *MPC, PLANE holds")
             continue
+        if type_ == "LINEAR":
+            deck.extra_fields(card, row, 4)
+            between = TieDraft("between", card, row.where, ready=True)
+            _on_line(between, card, row, 1)
+            deck.ties.append(between)
+            continue
         if type_ not in ("BEAM", "PIN", "TIE"):
             deck.row_error(
                 card,
                 row,
                 0,
                 f"MPC type {row.get(0)!r} is not supported",
-                "BEAM, PIN, TIE, STRAIGHT, SLIDER, PLANE are; or write *EQUATION, *RIGID BODY or "
-                "*COUPLING",
+                "BEAM, PIN, TIE, LINEAR, STRAIGHT, SLIDER, PLANE are; or write *EQUATION, *RIGID "
+                "BODY or *COUPLING",
             )
             continue
         deck.extra_fields(card, row, 3)

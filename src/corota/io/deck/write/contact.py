@@ -52,8 +52,11 @@ def contact_cards(writer: Writer) -> Iterator[str]:
         yield f"*SURFACE INTERACTION, NAME=INTERACTION{number}\n"
         if pair.law is not None:
             yield _behavior(pair.law)
+        if not pair.separates:
+            yield "*SURFACE BEHAVIOR, NO SEPARATION\n"
         if pair.friction:
-            yield f"*FRICTION\n{float(pair.friction)!r}\n"
+            limit = "" if pair.shear_limit is None else f", TAUMAX={float(pair.shear_limit)!r}"
+            yield f"*FRICTION{limit}\n{float(pair.friction)!r}\n"
         _check_heights(model, pair)
         slave, master = surfaces(writer, pair)
         yield from _new_node_surface(writer, pair.slave, known)
@@ -81,6 +84,10 @@ def step_cards(writer: Writer, number: int) -> Iterator[str]:
         slave, master = surfaces(writer, pair)
         if pair.start == "ramp" and number == 1:
             yield f"*CONTACT INTERFERENCE, SHRINK\n{slave}, {master}\n"
+        acts = pair.steps is None or number in pair.steps
+        if acts != (pair.steps is None or number == 1 or number - 1 in pair.steps):
+            change = "ADD" if acts else "REMOVE"
+            yield f"*MODEL CHANGE, TYPE=CONTACT PAIR, {change}\n{slave}, {master}\n"
         if pair.stabilize and pair.stabilize_from == number:
             yield f"*CONTACT CONTROLS, STABILIZE, SLAVE={slave}, MASTER={master}\n"
 

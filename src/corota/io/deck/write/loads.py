@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import UnsupportedError
-from corota.io.deck.write.text import DOFS, Writer, number, plain
+from corota.io.deck.write.text import DOFS, Writer, number, numbers, plain
 from corota.io.deck.write.thermal import temperatures
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature
 from corota.model.sections import thickness_at
@@ -112,6 +112,9 @@ def _edges(writer: Writer, load: EdgeLoad, option: str) -> Iterator[str]:
     name = writer.edge_set(load.edges)
     if load.kind == "pressure":
         yield f"*DSLOAD{option}\n{name}, P, {number(load.value[0])}\n"
+        return
+    if load.kind == "hydrostatic pressure":
+        yield f"*DSLOAD{option}\n{name}, HP, {numbers(load.value)}\n"
         return
     x, y = load.value
     size = math.hypot(x, y)

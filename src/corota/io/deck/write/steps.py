@@ -248,7 +248,11 @@ def _frequency(says: _Says) -> tuple[str, str]:
     if step.mass != "consistent":
         says.no(f"mass={step.mass!r} of Frequency")
     card = "COMPLEX FREQUENCY, CORIOLIS" if step.complex_modes else "FREQUENCY"
-    return says.head(perturbs=step.nlgeom), f"*{card}\n{step.modes}\n"
+    row = f"{step.modes or ''}"
+    if (step.lowest, step.highest) != (0.0, math.inf):
+        high = "" if step.highest == math.inf else numbers((step.highest,))
+        row += f", {numbers((step.lowest,))}, {high}"
+    return says.head(perturbs=step.nlgeom), f"*{card}\n{row}\n"
 
 
 def _modal_dynamic(says: _Says) -> tuple[str, str]:
