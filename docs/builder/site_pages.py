@@ -40,7 +40,7 @@ REFERENCE = {
     "Coupling StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",
     "Sweeps": "sweep sample grid Sweep seek Sought",
-    "Gradients of a run": "gradient value_and_grad optimize",
+    "Gradients of a run": "gradient value_and_grad optimize shape",
     "Periodic cells": "PeriodicCell",
     "Selections": "near on_line on_circle inside",
     "Results": "Results BodyMotion Frame PointFields History CriticalPoint Modes",

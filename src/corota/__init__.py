@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         SingularError,
         UnsupportedError,
     )
-    from corota.gradients import gradient, optimize, value_and_grad
+    from corota.gradients import gradient, optimize, shape, value_and_grad
     from corota.io.formats import read, write
     from corota.io.job import JobFiles
     from corota.io.result_reader import read_results
@@ -184,6 +184,7 @@ _HOMES = {
     "resume": "io.resume",
     "sample": "sweeps",
     "seek": "sweeps.seek",
+    "shape": "gradients",
     "solve": "analysis.run",
     "sweep": "sweeps",
     "value_and_grad": "gradients",
@@ -303,6 +304,7 @@ __all__ = [
     "resume",
     "sample",
     "seek",
+    "shape",
     "solve",
     "sweep",
     "value_and_grad",

@@ -146,3 +146,22 @@ def test_what_moving_asymptotes_refuse() -> None:
     even = gradients.Constraint(gradients.Displacement("right", "y"), -0.05, -0.05)
     with pytest.raises(ct.InputError, match="no equations"):
         ct.optimize(cantilever, [1.5, 1.5], gradients.Mass(), [even], bounds=BOUNDS, method="MMA")
+
+
+def test_where_no_design_keeps_the_constraints_the_nearest_counts() -> None:
+    """Also where the last analysis failed, which has no values."""
+    model_of = ct.shape(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=2))
+    model_of.control("top", 1)
+
+    def build(x: np.ndarray) -> ct.Model:
+        model = ct.Model(model_of.mesh(x))
+        model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3, rho=1.0))
+        model.fix("left")
+        model.force("right", y=-0.5)
+        return model
+
+    limit = gradients.Constraint(gradients.Mass(), upper=2.0)
+    tip = gradients.Displacement("right", "y")
+    found = ct.optimize(build, [0.0], tip, [limit], bounds=[(-1.5, 0.5)], most=4, threads=1)
+    assert any(design.error for design in found.history)
+    assert found.constraints[0] == min(d.values[1] for d in found.history if not d.error)

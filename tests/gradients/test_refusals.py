@@ -28,10 +28,49 @@ def refused(model: ct.Model, measure: gradients.Measure, wrt: object, why: str) 
         ct.gradient(results, measure, wrt)
 
 
-def test_dynamics() -> None:
-    model = beam(ct.Dynamic(period=0.1, increments=2))
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        ({"scheme": "energy_momentum"}, "energy_momentum"),
+        ({"rayleigh": (0.0, 1e-3)}, "damping per stiffness"),
+    ],
+)
+def test_dynamics(options: dict[str, object], why: str) -> None:
+    model = beam(ct.Dynamic(period=0.1, increments=2, **options))
     model.force("right", y=-0.1)
-    refused(model, TIP, MODULUS, "dynamic")
+    refused(model, TIP, MODULUS, why)
+
+
+def test_dynamics_after_statics_and_of_turning_masses() -> None:
+    model = beam(ct.Static())
+    model.force("right", y=-0.1)
+    model.steps.append(ct.Dynamic(period=0.1, increments=2))
+    refused(model, TIP, MODULUS, "beside other steps")
+    model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=8, ny=2))
+    model.section("all", element="Q4D", material=ct.Elastic(E=1000.0, nu=0.3, rho=1.0))
+    model.fix("left")
+    model.force("right", y=-0.1)
+    model.steps = [ct.Dynamic(period=0.1, increments=2)]
+    refused(model, TIP, MODULUS, "mass='constant'")
+
+
+def test_what_bodies_do_not_have() -> None:
+    """A solid of revolution has no thickness, and no area that its volume gives."""
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, nx=2, ny=2, origin=(1.0, 0.0)))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3), plane="axisymmetric")
+    model.fix("bottom")
+    model.force("top", y=-1.0)
+    refused(model, gradients.Displacement("top", "y"), gradients.Thickness(), "no thickness")
+    with pytest.raises(ct.UnsupportedError, match="Mass"):
+        ct.gradient(ct.solve(model, threads=1), gradients.Area(), MODULUS)
+
+
+def test_velocity_of_a_static_step() -> None:
+    model = beam()
+    model.force("right", y=-0.1)
+    results = ct.solve(model, threads=1)
+    with pytest.raises(ct.InputError, match="dynamic step"):
+        ct.gradient(results, gradients.Velocity("right", "y"), MODULUS)
 
 
 def test_friction_over_several_steps() -> None:
@@ -123,3 +162,10 @@ def test_reaction_where_nothing_is_fixed() -> None:
     results = ct.solve(model, threads=1)
     with pytest.raises(ct.InputError, match="not supported"):
         ct.gradient(results, gradients.Reaction("right", "y"), MODULUS)
+
+
+def test_mass_without_a_density() -> None:
+    model = beam(law=ct.Elastic(E=1000.0, nu=0.3))
+    model.force("right", y=-0.1)
+    with pytest.raises(ct.InputError, match="density"):
+        ct.gradient(ct.solve(model, threads=1), gradients.Mass(), MODULUS)

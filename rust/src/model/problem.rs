@@ -397,7 +397,8 @@ impl Problem {
     /// Gradients of the weighted forces and new state of the elements at displacements `u` from
     /// the committed state, which stays.
     pub fn gradients(&self, u: &[f64], nlgeom: bool, weights: &Weights<'_>) -> Sums {
-        let context = Context { nlgeom, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
+        let clock = self.clock;
+        let context = Context { nlgeom, clock, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
         let chunks: Vec<&dyn Chunk> = self.colors.iter().flatten().map(AsRef::as_ref).collect();
         let evaluate = |chunk: &&dyn Chunk| chunk.differentiate(&context, weights);
         let parts: Vec<Gradients> = match self.pool() {
@@ -434,7 +435,7 @@ impl Problem {
         Ok(())
     }
 
-    /// Values at the points of every block.
+    /// Values at the points of every block, after the time of the clock since the committed state.
     pub fn recover(&mut self, u: &[f64], nlgeom: bool) -> Vec<Fields> {
         let (blocks, pool) = (&self.blocks, self.pool());
         let empty = |block: usize, n: usize| {
@@ -442,7 +443,8 @@ impl Problem {
             let n_dofs = b.facts.n_nodes * b.facts.dofs_per_node;
             Fields::new(n, b.facts.n_points, n_dofs, &b.law, b.outputs().len())
         };
-        let context = Context { nlgeom, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
+        let clock = self.clock;
+        let context = Context { nlgeom, clock, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
         let evaluate = |chunk: &&dyn Chunk| {
             let mut part = empty(chunk.block(), chunk.elements().len());
             chunk.recover(&context, &mut part);

@@ -54,6 +54,8 @@ def _own(
     """Fields, sums and largest linear local strain of the own elements."""
     fields, energy, largest = [], 0.0, 0.0
     artificial = plastic = creep = 0.0
+    # Those of the committed state, after which no time has passed.
+    system.core.set_clock(0.0, 0.0, False)
     raw = system.core.recover(system.in_space(u), system.nlgeom)
     for index, (block, own) in enumerate(zip(system.own_blocks, raw, strict=True)):
         for name, values in own["values"].items():

@@ -12,8 +12,11 @@ from corota.gradients.measures import (
     Reaction,
     StrainEnergy,
     Stress,
+    Velocity,
+    Width,
 )
 from corota.gradients.optimization import Constraint, Design, Optimum, optimize
+from corota.gradients.page import write_page
 from corota.gradients.parameters import (
     Attribute,
     Constant,
@@ -23,7 +26,8 @@ from corota.gradients.parameters import (
     Shape,
     Thickness,
 )
-from corota.gradients.runs import ValueAndGradient, gradient, value_and_grad
+from corota.gradients.runs import Run, ValueAndGradient, gradient, value_and_grad
+from corota.gradients.shaping import ShapeDesign, shape
 
 __all__ = [
     "Area",
@@ -44,13 +48,19 @@ __all__ = [
     "Parameter",
     "Positions",
     "Reaction",
+    "Run",
     "Shape",
+    "ShapeDesign",
     "StrainEnergy",
     "Stress",
     "Thickness",
     "ValueAndGradient",
+    "Velocity",
+    "Width",
     "gradient",
     "optimize",
     "optimize_density",
+    "shape",
     "value_and_grad",
+    "write_page",
 ]

@@ -26,6 +26,7 @@ from corota.errors import UnsupportedError
 from corota.gradients import friction
 from corota.gradients.differences import derivative
 from corota.gradients.measures import SpecialMeasure
+from corota.gradients.motion import Rates
 from corota.gradients.surfaces import evaluate, slide
 from corota.gradients.surfaces import solve as solve_with_surfaces
 from corota.model.dofs import dof_index
@@ -75,6 +76,10 @@ class Adjoint:
     multipliers: Floats | None = None
     #: Weights of residuals that must not depend on a parameter, shape (n_dofs, m).
     vanishing: Floats | None = None
+    #: Weights of the velocity at the start of a motion, shape (n_dofs, m).
+    velocity: Floats | None = None
+    #: Weights of what the equation of motion does not have there, shape (n_dofs, m).
+    trace: Floats | None = None
 
     @property
     def weights(self) -> Floats:
@@ -108,8 +113,11 @@ def adjoints(
     """
     values = [0.0] * len(leaves)
     at_frame: dict[int, list[tuple[int, Measure]]] = {}
-    frames = {increment.frame for increment in increments}
+    frames = {i.frame for i in increments if i.rates is None or i.dt}
     last_frame = max(frames)
+    moves = increments[-1].rates is not None
+    if moves and any(isinstance(leaf, SpecialMeasure) for leaf in leaves):
+        raise UnsupportedError("critical loads and frequencies belong to static steps")
     if trajectory.remembers and any(isinstance(leaf, SpecialMeasure) for leaf in leaves):
         raise UnsupportedError(
             "critical loads and frequencies of materials with history have no gradient: their "
@@ -121,13 +129,13 @@ def adjoints(
         frame = leaf.frame if leaf.frame >= 0 else last_frame + 1 + leaf.frame
         if frame not in frames:
             raise UnsupportedError(
-                f"measure {leaf!r}: frame {leaf.frame} is no converged increment of a static step"
+                f"measure {leaf!r}: frame {leaf.frame} is no converged increment"
             )
         at_frame.setdefault(frame, []).append((column, leaf))
     reverse: list[Adjoint] = []
     if trajectory.slides:
         return values, _sliding(trajectory, increments, at_frame, values, wanted)
-    if not trajectory.remembers:
+    if not trajectory.remembers and not moves:
         for point in trajectory.walk(_needed(increments, at_frame)):
             own = at_frame.get(point.increment.frame, [])
             plain = [(c, leaf) for c, leaf in own if not isinstance(leaf, SpecialMeasure)]
@@ -150,13 +158,16 @@ def adjoints(
     y: list[list[Floats]] = [[] for _ in leaves]
     final = max(at_frame)
     step = increments[-1].step
+    later = None
+    if moves:
+        later = Rates(*np.zeros((4, trajectory.system.n_dofs, len(leaves))))
     for k in range(len(increments) - 1, -1, -1):
         if increments[k].frame > final:
             continue
         if increments[k].step != step:
             step = increments[k].step
             trajectory = trajectory.at_step(increments, step)
-        reverse.append(_backward(trajectory, increments[k], at_frame, y, len(leaves)))
+        reverse.append(_backward(trajectory, increments[k], at_frame, y, len(leaves), later))
     return values, reverse[::-1]
 
 
@@ -291,33 +302,45 @@ def _backward(
     at_frame: dict[int, list[tuple[int, Measure]]],
     y: list[list[Floats]],
     count: int,
+    later: Rates | None,
 ) -> Adjoint:
-    """Adjoint states at an increment with histories; `y` is taken to the increment before."""
-    from corota.gradients.trajectory import Point
-
+    """Adjoint states at an increment; `y` and `later` are taken to the increment before."""
     system = trajectory.system
     core = system.core
-    core.set_histories(increment.histories)
-    u = system.from_nodes(increment.by_node)
-    u = system.conditions.supports.at(increment.time, u)
-    system.constraints.complete(u)
-    at = system.forces(u, increment.time)
-    at.link = system.constraints.link(u)
-    point = Point(system, increment, u, at, trajectory.steps)
+    if trajectory.remembers:
+        core.set_histories(increment.histories)
+    point = trajectory.point(increment)
     trajectory.require_equilibrium(point)
-    here, nothing = system.in_space(u), np.zeros(system.n_dofs)
+    here, nothing = system.in_space(point.u), np.zeros(system.n_dofs)
     rhs, moved = np.zeros((2, system.n_dofs, count))
     own = at_frame.get(increment.frame, [])
+    motion = trajectory.motion
+    if later is not None:
+        assert motion is not None
+        for column, leaf in own:
+            later.v[:, column] += leaf.by_velocity(point)
+        rhs -= motion.by_end_state(later, increment.dt)
+        if not increment.dt:
+            z = _solve(trajectory, point, rhs, moved)
+            passed = np.zeros_like(z)
+            if later.weights is not None:
+                passed = motion.begun * later.weights
+            return Adjoint(increment, own, z + passed, velocity=later.v.copy(), trace=-passed)
     for column, leaf in own:
-        rhs[:, column] = -leaf.by_displacement(point)
+        rhs[:, column] -= leaf.by_displacement(point)
         moved[:, column] = leaf.by_reaction(point)
     for column in range(count):
         if y[column]:
             found = core.differentiate(here, system.nlgeom, nothing, y[column], ["displacements"])
             rhs[:, column] -= system.at_nodes(found["displacements"])
-    z = _solve(trajectory, point, rhs, moved, exact=True)
+    z = _solve(trajectory, point, rhs, moved, exact=trajectory.remembers)
     adjoint = Adjoint(increment, own, z, [list(each) for each in y])
     _at_fixed_control(trajectory, point, own, adjoint)
+    if later is not None:
+        assert motion is not None
+        vars(later).update(vars(motion.before(later, z, increment.dt)))
+    if not trajectory.remembers:
+        return adjoint
     for column in range(count):
         force = np.ascontiguousarray(system.in_space(z[:, column]))
         if not force.any() and not y[column] and not own:
@@ -342,6 +365,8 @@ def _solve(
     """
     system = trajectory.system
     at = system.evaluate(point.u, point.increment.time)
+    if trajectory.motion is not None:
+        trajectory.motion.stiffen(at, point.increment.dt)
     tangent = _of_elements(point) if exact else None
     z = system.correct_adjoint(at, rhs, moved)
     if tangent is None:

@@ -50,6 +50,10 @@ class Measure(ABC):
         """Derivative by the reactions of prescribed dofs, shape (n_dofs,)."""
         return np.zeros(point.system.n_dofs)
 
+    def by_velocity(self, point: Point) -> Floats:
+        """Derivative by velocities in a dynamic step, shape (n_dofs,)."""
+        return np.zeros(point.system.n_dofs)
+
     def by_factor(self, point: Point) -> float:
         """Derivative by the load factor, of measures that contain it."""
         return 0.0
@@ -210,6 +214,39 @@ class Displacement(Measure):
 
 
 @dataclass
+class Velocity(Measure):
+    """Mean velocity of nodes in global axes, in a dynamic step [length/time or rad/time].
+
+    Parameters
+    ----------
+    where : str, int or array_like of int
+    dof : {"x", "y", "rotation"}
+    frame : int
+    """
+
+    where: Where
+    dof: str | int
+    frame: int = -1
+    state_only = True
+
+    def value(self, point: Point) -> float:
+        """Its value.
+
+        Raises
+        ------
+        InputError
+            If its frame is not of a dynamic step.
+        """
+        if not len(point.v):
+            raise InputError(f"{self!r}: a velocity belongs to a dynamic step")
+        return float(self.by_velocity(point) @ point.v)
+
+    def by_velocity(self, point: Point) -> Floats:
+        """The weights of the nodes."""
+        return _mean(point, self.where, self.dof, mean=True)
+
+
+@dataclass
 class Reaction(Measure):
     """Sum of the reactions of supported nodes in global axes [force or moment].
 
@@ -332,6 +369,8 @@ class Mass(Measure):
 class Area(Measure):
     """Reference area of the elements in a set, or of all [length^2]; line elements have none.
 
+    Solids of revolution are refused: their volume is that of the circumference.
+
     Parameters
     ----------
     cells : str or array_like of int, optional
@@ -345,23 +384,72 @@ class Area(Measure):
         return _volume(point, self.cells, weighed=False)
 
 
+@dataclass
+class Width(Measure):
+    """Least distance of two boundaries in the reference shape [length], as a bound of a member.
+
+    ``(sum d^-p)^(-1/p)`` over the distances d of the nodes of both: smooth, and never above the
+    least of them, to which it rises with p.
+
+    Parameters
+    ----------
+    one, other : str
+        Edge sets.
+    p : float
+    """
+
+    one: str
+    other: str
+    p: float = 24.0
+    frame: int = -1
+
+    def value(self, point: Point) -> float:
+        """Its value."""
+        mesh = point.system.model.mesh
+        found, edges = [], {}
+        for name in (self.one, self.other):
+            if name not in mesh.edge_sets:
+                raise InputError(f"{self!r}: no edge set named {name!r}")
+            edges[name] = mesh.edge_nodes(mesh.edge_sets[name])
+        for here, there in ((self.one, self.other), (self.other, self.one)):
+            at = mesh.points[np.unique(np.concatenate(edges[here]))]
+            ends = np.stack([e[:2] for e in edges[there]])
+            a, step = mesh.points[ends[:, 0]], np.diff(mesh.points[ends], axis=1)[:, 0]
+            offset = at[:, None] - a
+            share = np.clip((offset * step).sum(axis=2) / (step**2).sum(axis=1), 0.0, 1.0)
+            far = np.linalg.norm(offset - share[..., None] * step, axis=2)
+            found.append(far.min(axis=1))
+        distance = np.concatenate(found)
+        least = float(distance.min())
+        if not least > 0.0:
+            raise InputError(f"{self!r}: the boundaries touch")
+        return float(least * ((least / distance) ** self.p).sum() ** (-1.0 / self.p))
+
+
 def _volume(point: Point, cells: Where | None, weighed: bool) -> float:
     from corota.model import elements
 
-    system, total = point.system, 0.0
+    system, total, heavy = point.system, 0.0, False
     wanted = _cells(point, cells)
     fields = fields_of(system.core, system.in_space(point.u), point)
     for block, own in zip(system.blocks, fields, strict=True):
         inside = wanted[block.cells]
         volume = own["volume"][inside]
         if weighed:
+            heavy = heavy or block.section.material.rho > 0.0
             total += block.section.material.rho * float(volume.sum())
+        elif block.section.axisymmetric:
+            raise UnsupportedError(
+                "the area of a solid of revolution is no measure with a gradient: take Mass"
+            )
         elif not elements.find(block.section.element).line:
             thickness = np.full(volume.shape, float(block.section.thickness))
             if block.section.nodal_thickness is not None:
                 nodal = block.section.thickness_at(block.nodes, system.model.mesh.points)
                 thickness = (nodal @ own["shape"].T)[inside]
             total += float((volume / thickness).sum())
+    if weighed and not heavy:
+        raise InputError("no material of these elements has a density: give rho=, or take Area")
     return total
 
 
@@ -442,6 +530,10 @@ class Stress(Measure):
             (self._of(own)[wanted[block.cells]], own["volume"][wanted[block.cells]])
             for block, own in zip(system.blocks, fields, strict=True)
         ]
+        slopes = [
+            self._by_stress(own["values"]["S"][wanted[block.cells]])
+            for block, own in zip(system.blocks, fields, strict=True)
+        ]
         size = np.concatenate([s.ravel() for s, _ in parts])
         volume = np.concatenate([v.ravel() for _, v in parts])
         slope = self._slope(size, volume)
@@ -449,21 +541,34 @@ class Stress(Measure):
         known = system.core.histories(False)
         by_history = [np.zeros(len(h)) for h in known]
         start = 0
-        for index, (block, (own, _)) in enumerate(zip(system.blocks, parts, strict=True)):
+        each = zip(system.blocks, parts, slopes, strict=True)
+        for index, (block, (own, _), by_stress) in enumerate(each):
             weights = slope[start : start + own.size].reshape(own.shape)
             start += own.size
             rows = np.flatnonzero(wanted[block.cells])
             if not len(rows):
                 continue
             separate = Separate(system, index, rows, here)
-            of = self._weighted(weights)
+            of = self._weighted(weights[..., None] * by_stress)
             separate.by_displacement(of, out)
             if histories and len(known[index]):
                 separate.by_history(of, by_history[index])
         return system.at_nodes(out), by_history
 
     def _weighted(self, weights: Floats) -> Callable[[dict[str, Any]], Floats]:
-        return lambda own: (weights * self._of(own)).sum(axis=1)
+        return lambda own: (weights * own["values"]["S"]).sum(axis=(1, 2))
+
+    def _by_stress(self, stress: Floats) -> Floats:
+        """Derivative of the variable by the components, which are smooth where it is zero, too."""
+        if self._component is not None:
+            one: Floats = np.eye(4)[self._component] + np.zeros_like(stress)
+            return one
+        mean = stress[..., :3].mean(axis=-1, keepdims=True)
+        out: Floats = 1.5 * (stress - mean * np.array([1.0, 1.0, 1.0, 0.0]))
+        out[..., 3] *= 2.0
+        size = np.sqrt((out[..., :3] ** 2).sum(axis=-1) / 1.5 + out[..., 3] ** 2 / 3.0)
+        out /= np.where(size > 0.0, size, 1.0)[..., None]
+        return out
 
     def _of(self, own: dict[str, Any]) -> Floats:
         values: Floats = own["values"]["MISES"]
@@ -498,6 +603,8 @@ __all__ = [
     "SpecialMeasure",
     "StrainEnergy",
     "Stress",
+    "Velocity",
+    "Width",
     "combine",
     "leaves",
 ]

@@ -91,7 +91,8 @@ class Optimum(Brief):
     Parameters
     ----------
     x : ndarray, shape (k,)
-        The best design that keeps the constraints, to a millionth of their bounds.
+        The best design that keeps the constraints, to a millionth of their bounds; where none does,
+        the one that misses them least.
     value : float
         Objective there.
     constraints : ndarray
@@ -315,7 +316,7 @@ def optimize(
         found = moving_asymptotes(at, usable, start / scale, box, limits, tolerance, most)
     else:
         found = _by_scipy(method, at, start / scale, box, limits, tolerance, most)
-    best = _best(designs, own, unit, _unscaled(found.x, scale, bounds))
+    best = _best(designs, own, unit)
     return Optimum(
         np.array(best.x),
         best.values[0],
@@ -395,20 +396,17 @@ def _unscaled(y: Floats, scale: Floats, bounds: Sequence[tuple[float, float]] | 
     return x
 
 
-def _best(
-    designs: Designs, constraints: Sequence[Constraint], unit: Floats, last: Floats
-) -> Design:
-    """The best design that keeps the constraints; else the one where the optimizer ended."""
-    kept = []
-    for each in designs.history:
-        if each.error:
-            continue
+def _best(designs: Designs, constraints: Sequence[Constraint], unit: Floats) -> Design:
+    """The best design that keeps the constraints; else the one that is nearest to it."""
+    good = [each for each in designs.history if not each.error]
+    excess = []
+    for each in good:
         over = [c.excess(v) / c.size for c, v in zip(constraints, each.values[1:], strict=True)]
-        if max(over, default=0.0) <= 1e-6:
-            kept.append(each)
+        excess.append(max(over, default=0.0))
+    kept = [each for each, over in zip(good, excess, strict=True) if over <= 1e-6]
     if kept:
         return min(kept, key=lambda e: unit[0] * e.values[0])
-    return designs.at(last)
+    return good[int(np.argmin(excess))]
 
 
 __all__ = ["Constraint", "Design", "Designs", "Optimum", "optimize"]

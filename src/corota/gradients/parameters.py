@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError, UnsupportedError
+from corota.model import elements
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -326,6 +327,12 @@ class Thickness(Field):
     def require(self, trajectory: Trajectory, adjoint: Adjoint) -> None:
         """Refuse loads on edges and bodies, which act on the thickness."""
         model, what = trajectory.model, ""
+        sections = (block.section for block in trajectory.system.blocks)
+        if all(s.axisymmetric or elements.find(s.element).line for s in sections):
+            raise UnsupportedError(
+                "line elements and solids of revolution have no thickness: take "
+                "gradients.Attribute or value_and_grad for their cross-sections"
+            )
         if trajectory.system.conditions.distributed.loads:
             what = "loads of edges and bodies"
         elif model.contacts or model.ties:

@@ -37,7 +37,7 @@ SYMMETRY = 1e-7
 #: Least size of a sum of forces, over the largest of them.
 FORCE_FLOOR = 1e-8
 #: Relative difference of the results of second and fourth order that shows a kink.
-KINK = 1e-2
+KINK = 1e-4
 
 
 def gradient(
@@ -202,6 +202,10 @@ class Run:
             if adjoint.multipliers is not None:
                 total[: len(self.leaves)] += point.gaps @ adjoint.multipliers
                 size[: len(self.leaves)] += np.abs(point.gaps) @ np.abs(adjoint.multipliers)
+            if adjoint.velocity is not None:
+                total[: len(self.leaves)] += point.v @ adjoint.velocity
+            if adjoint.trace is not None:
+                total[: len(self.leaves)] += point.trace @ adjoint.trace
             if adjoint.control is not None:
                 total[: len(self.leaves)] += self._off_control(adjoint, point)
             if any(adjoint.histories):

@@ -31,9 +31,9 @@ def fields_of(core: Any, u: Floats, point: Point) -> list[dict[str, Any]]:
     return found
 
 
-#: Step over the size of an element, a strain, or of a member of the histories: stresses have kinks
-#: at the border of flow, and where they vanish.
-STEP = 1e-6
+#: Step over the size of an element, a strain, or of a member of the histories: smooth laws take the
+#: first one; stresses have kinks at the border of flow, from which the second one keeps away.
+STEP, BY_FLOW = 1e-4, 1e-6
 
 
 class Separate:
@@ -70,9 +70,10 @@ class Separate:
             self.histories = histories.reshape(-1, self.members)[rows].copy()
             self.core.set_histories([self.histories.ravel()])
         system.free.give(index, rows, self.core)
+        system.elements.give_clock(self.core)
         #: Step of a displacement, by element.
         size = np.ptp(system.model.mesh.points[block.nodes], axis=1).max(axis=1)
-        self.step = float(STEP * (size.min() or 1.0))
+        self.step = float((BY_FLOW if self.members else STEP) * (size.min() or 1.0))
 
     def by_displacement(self, of: Of, out: Floats) -> None:
         """Add the derivatives by all dofs of a number of each element, to shape (n_dofs,)."""
@@ -90,7 +91,7 @@ class Separate:
         """Add the derivatives by the members of the histories, to those of the block."""
         into = out.reshape(-1, self.members)
         for k in range(self.members):
-            size = float(np.abs(self.histories[:, k]).max(initial=0.0)) or STEP
+            size = float(np.abs(self.histories[:, k]).max(initial=0.0)) or BY_FLOW
 
             def value(offset: float, k: int = k) -> Floats:
                 moved = self.histories.copy()
@@ -98,7 +99,7 @@ class Separate:
                 self.core.set_histories([moved.ravel()])
                 return of(self.core.recover(self.u, self.nlgeom)[0])
 
-            into[self.rows, k] += all_derivatives(value, STEP * size)
+            into[self.rows, k] += all_derivatives(value, BY_FLOW * size)
         if self.members:
             self.core.set_histories([self.histories.ravel()])
 

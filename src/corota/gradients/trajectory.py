@@ -17,7 +17,9 @@ from corota.analysis.equations import System
 from corota.analysis.linear.solvers import make_solver
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.errors import InputError, UnsupportedError
+from corota.gradients.motion import Motion, refuse_motion
 from corota.gradients.surfaces import Surfaces, add_forces, find, refuse_surfaces, slide
+from corota.model.steps import Dynamic
 from corota.model.user_material import UserMaterial
 
 if TYPE_CHECKING:
@@ -56,6 +58,8 @@ class Increment:
     by_node : ndarray, shape (n_nodes, 3)
     histories : list of ndarray
         Of the elements of each block before the increment; empty where no law has any.
+    begun : float
+        Step time at which it began.
     """
 
     frame: int
@@ -64,20 +68,28 @@ class Increment:
     factor: float
     by_node: Floats
     histories: list[Floats] = field(default_factory=list)
+    begun: float = 0.0
     #: Whether its load factor was an unknown, and whether it is the last of its step.
     along: bool = False
     last: bool = False
     #: Multipliers of contact and ties, once they are known.
     surfaces: Surfaces | None = None
+    #: Velocity and acceleration of a dynamic step, shape (2, n_nodes, 3).
+    rates: Floats | None = None
+
+    @property
+    def dt(self) -> float:
+        """Its length [time]; 0 for the start of a motion."""
+        return self.time - self.begun
 
 
 def increments_of(results: Results) -> list[Increment]:
-    """Increments of all steps of a run, without its start.
+    """Increments of all steps of a run; of a motion with its start.
 
     Raises
     ------
     UnsupportedError
-        If a step has no static states.
+        If a step has no states with a gradient.
     InputError
         If frames were not kept.
     """
@@ -85,25 +97,29 @@ def increments_of(results: Results) -> list[Increment]:
         raise InputError("results without frames have no gradient; run the model first")
     if results.keep != "all":
         raise InputError("gradients need the frames of all increments: solve with keep='all'")
-    found = []
+    found: list[Increment] = []
     for index, frame in enumerate(results.frames):
         step = results.steps[frame.step - 1]
-        _require_static(step)
-        if frame.increment == 0:
+        _require_states(step)
+        if frame.increment == 0 and step.procedure != "dynamic":
             continue
-        found.append(_increment(index, frame, step))
+        increment = _increment(index, frame, step)
+        if found and found[-1].step == increment.step:
+            increment.begun = found[-1].time
+        found.append(increment)
     for one, two in itertools.pairwise([*found, None]):
         if one is not None and (two is None or two.step > one.step):
             one.last = True
-    if not found:
+    if not any(results.frames[each.frame].increment for each in found):
         raise InputError("results without increments have no gradient")
     return found
 
 
-def _require_static(step: Step) -> None:
-    if step.procedure not in ("static", "frequency"):
+def _require_states(step: Step) -> None:
+    if step.procedure not in ("static", "frequency", "dynamic"):
         raise UnsupportedError(
-            f"gradients follow static and frequency steps; a {step.procedure} step has none",
+            f"gradients follow static, dynamic and frequency steps; a {step.procedure} step has "
+            "none",
             step.where,
         )
 
@@ -114,7 +130,12 @@ def _increment(index: int, frame: Frame, step: Step) -> Increment:
         return Increment(index, frame.step - 1, 0.0, 0.0, np.column_stack([frame.U, frame.UR]))
     time = frame.factor * step.period if along else frame.step_time
     by_node = np.column_stack([frame.U, frame.UR])
-    return Increment(index, frame.step - 1, time, frame.factor, by_node, along=along)
+    rates = None
+    if step.procedure == "dynamic":
+        assert frame.V is not None
+        assert frame.A is not None
+        rates = np.stack([frame.V, frame.A])
+    return Increment(index, frame.step - 1, time, frame.factor, by_node, along=along, rates=rates)
 
 
 @dataclass
@@ -132,6 +153,8 @@ class Point:
     steps : list of Step
     gaps : ndarray, shape (n_multipliers,)
         Residuals of closed surfaces; empty without contact.
+    v : ndarray, shape (n_dofs,)
+        Velocity; empty in static steps.
     """
 
     system: System
@@ -140,6 +163,9 @@ class Point:
     at: Evaluation
     steps: list[Step]
     gaps: Floats = field(default_factory=lambda: np.zeros(0))
+    v: Floats = field(default_factory=lambda: np.zeros(0))
+    #: Part of the first accelerations that the equation of motion does not have.
+    trace: Floats = field(default_factory=lambda: np.zeros(0))
 
     @property
     def reaction(self) -> Floats:
@@ -166,6 +192,9 @@ class Trajectory:
     def __init__(self, model: Model, steps: Sequence[Step], threads: int = 1) -> None:
         self.model, self.steps, self.threads = model, list(steps), threads
         refuse(model)
+        refuse_motion(model, steps)
+        #: Inertia and damping in a dynamic step.
+        self.motion: Motion | None = None
         self.system = System(model, make_solver("multifrontal"), threads)
         materials = [block.section.material for block in self.system.blocks]
         #: Whether the stress of any material depends on the strain path.
@@ -198,6 +227,8 @@ class Trajectory:
                 step += 1
                 system.mass = masses[step]
                 system.begin(self.steps[step], total, u, reaction)
+                own = self.steps[step]
+                self.motion = Motion(system, own) if isinstance(own, Dynamic) else None
                 if np.any(system.conditions.fading):
                     dof = int(np.flatnonzero(system.conditions.fading)[0])
                     raise UnsupportedError(
@@ -210,17 +241,15 @@ class Trajectory:
                     system.core.set_histories(increment.histories)
                 else:
                     increment.histories = system.core.histories(False)
-            u = system.from_nodes(increment.by_node)
-            u = system.conditions.supports.at(increment.time, u)
-            system.constraints.complete(u)
-            at = system.forces(u, increment.time)
-            at.link = system.constraints.link(u)
-            gaps = np.zeros(0)
+            point = self.point(increment)
+            u, at = point.u, point.at
             if system.n_multipliers:
                 if increment.surfaces is None:
                     increment.surfaces = find(system, u, increment.time, at)
-                gaps = add_forces(system, u, increment.time, at, increment.surfaces)
-            yield Point(system, increment, u, at, self.steps, gaps)
+                point.gaps = add_forces(system, u, increment.time, at, increment.surfaces)
+            yield point
+            if increment.rates is not None and not increment.dt:
+                continue
             if self.remembers and not given:
                 # Others may have been evaluated meanwhile.
                 at = system.forces(u, increment.time)
@@ -233,6 +262,26 @@ class Trajectory:
             if last and self.steps[step].procedure == "static":
                 system.conditions.end_time = increment.time
                 reaction = at.reaction
+
+    def point(self, increment: Increment) -> Point:
+        """The state of an increment in the equations of its step, without contact."""
+        system, motion = self.system, self.motion
+        u = system.from_nodes(increment.by_node)
+        u = system.conditions.supports.at(increment.time, u)
+        system.constraints.complete(u)
+        system.elements.reached = increment.begun
+        at = system.forces(u, increment.time)
+        at.link = system.constraints.link(u)
+        found = Point(system, increment, u, at, self.steps)
+        if motion is not None:
+            assert increment.rates is not None
+            v, a = (system.from_nodes(each) for each in increment.rates)
+            if not increment.dt:
+                v = motion.start(u)
+            motion.drive(v, a, increment.time, increment.dt)
+            found.trace = motion.add(at, u, v, a, not increment.dt)
+            found.v = v
+        return found
 
     def slide(self, u: Floats, increment: Increment) -> None:
         """Let slips of the next increment begin at a displacement."""
@@ -273,6 +322,8 @@ class Trajectory:
         free = ~system.conditions.constrained
         size = max(float(np.abs(point.at.scale).max(initial=0.0)), 1e-300)
         left = float(np.abs(point.reaction[free]).max(initial=0.0))
+        if self.motion is not None:
+            left = max(left - self.motion.left, 0.0)
         worst = left / size
         if worst > EQUILIBRIUM and not system.scales.stiffest:
             # Bodies without forces have residuals that are rounding of their positions.
@@ -294,13 +345,6 @@ def refuse(model: Model) -> None:
     """
     refuse_surfaces(model)
     for section in model.sections:
-        if section.axisymmetric:
-            raise UnsupportedError("gradients do not include axisymmetric bodies", section.where)
-        if section.material.depends_on_time:
-            raise UnsupportedError(
-                "gradients do not include materials that depend on the time (rates, creep)",
-                section.where,
-            )
         if isinstance(section.material, UserMaterial):
             raise UnsupportedError(
                 "gradients do not include materials in Python: their derivatives are not known",

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -58,8 +58,12 @@ class Elements(Term):
     def _set_clock(self, time: float) -> None:
         """Tell the laws the time since the committed state."""
         self.seen = time
-        passed = max(time - self.reached, 0.0) if self.passes else 0.0
-        self.system.core.set_clock(passed, self.begun + time, self.lasting)
+        self.give_clock(self.system.core)
+
+    def give_clock(self, core: Any) -> None:
+        """Tell other elements the same time."""
+        passed = max(self.seen - self.reached, 0.0) if self.passes else 0.0
+        core.set_clock(passed, self.begun + self.seen, self.lasting)
 
     def add(self, point: StatePoint, at: Evaluation) -> None:
         """Fill in forces, their sizes and, unless it is empty, the tangent.
