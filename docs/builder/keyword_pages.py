@@ -107,7 +107,14 @@ def page(key: str, docs: Path) -> str:
     deck = deck_of(name, decks)
     if deck:
         file, text, marked = deck
-        lines += ["## A deck that runs", "", f"`corota run {file}`", "", "```{code-block} text"]
+        library = " --allow-library law.so" if "*USER MATERIAL" in text else ""
+        lines += [
+            "## A deck that runs",
+            "",
+            f"`corota run {file}{library}`",
+            "",
+            "```{code-block} text",
+        ]
         lines += [f":emphasize-lines: {','.join(map(str, marked))}", "", text.rstrip(), "```", ""]
     return "\n".join(lines)
 

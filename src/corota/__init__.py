@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from corota.mesh import Cells, Mesh
     from corota.mesh.geometric import inside, near, on_circle, on_line
     from corota.model.attachments import Dashpot, PointMass
+    from corota.model.compiled import CompiledMaterial, Umat
     from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
     from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie, gap_element
     from corota.model.hill import Hill
@@ -98,6 +99,7 @@ _HOMES = {
     "Buckle": "model.steps",
     "Cells": "mesh",
     "cells": "",
+    "CompiledMaterial": "model.compiled",
     "ContactPair": "model.contact",
     "ConvergenceError": "errors",
     "CorotaError": "errors",
@@ -162,6 +164,7 @@ _HOMES = {
     "Temperature": "model.loads",
     "Tie": "model.contact",
     "UnsupportedError": "errors",
+    "Umat": "model.compiled",
     "UserMaterial": "model.user_material",
     "Voce": "model.plasticity",
     "Yeoh": "model.hyperelastic",
@@ -211,6 +214,7 @@ __all__ = [
     "BodyMotion",
     "Buckle",
     "Cells",
+    "CompiledMaterial",
     "ContactPair",
     "ConvergenceError",
     "CorotaError",
@@ -278,6 +282,7 @@ __all__ = [
     "Sweep",
     "Temperature",
     "Tie",
+    "Umat",
     "UnsupportedError",
     "UserMaterial",
     "Visco",

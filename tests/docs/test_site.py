@@ -15,6 +15,7 @@ import corota as ct
 from corota.cli import main
 from corota.io.deck.keywords import KEYWORDS
 from corota.model import elements
+from support.compiled import compiled_laws
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 DECKS = sorted((DOCS / "decks").glob("*.inp"))
@@ -77,7 +78,10 @@ def test_deck_of_an_element_gives_the_stress_it_says(name: str, tmp_path: Path) 
 
 @pytest.mark.parametrize("deck", DECKS, ids=lambda p: p.name)
 def test_decks_of_the_documents_run(deck: Path, tmp_path: Path) -> None:
-    assert main(["run", str(deck), "-o", str(tmp_path), "--quiet"]) == 0
+    options = []
+    if "*USER MATERIAL" in deck.read_text(encoding="utf-8"):
+        options = ["--allow-library", str(compiled_laws(tmp_path))]
+    assert main(["run", str(deck), "-o", str(tmp_path), "--quiet", *options]) == 0
 
 
 def test_links_of_the_repository_lead_into_the_site(site: ModuleType) -> None:

@@ -3,15 +3,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import corota as ct
+from corota import _core
 
 E, NU, SY = 200e3, 0.3, 200.0
 SHEET = ct.Hill(E, NU, yield_stress=SY, isotropic=500.0, R22=1.2, R33=0.9, R12=0.8)
+MOVING = ct.Hill(E, NU, yield_stress=SY, kinematic=2e3, R22=1.2, R33=0.9, R12=0.8)
+RECALLED = ct.Hill(
+    E, NU, yield_stress=SY, isotropic=500.0, chaboche=[(2e4, 100.0), (1e3, 0.0)], R22=1.2, R33=0.9
+)
 
 
 def yielding(law: ct.Hill, angle: float) -> tuple[float, float]:
@@ -31,22 +38,64 @@ def test_ratios_of_one_are_mises() -> None:
     random = np.random.default_rng(2)
     path = np.cumsum(2e-3 * random.uniform(-1.0, 1.0, (20, 3)), axis=0)
     curve = [(SY, 0.0), (250.0, 0.01)]
-    for plane in ("stress", "strain"):
-        one = ct.Hill(E, NU, yield_curve=curve).respond(path, plane)
-        two = ct.Mises(E, NU, yield_curve=curve).respond(path, plane)
-        for name in ("stress", "tangent", "zz", "energy", "PEEQ", "PWORK", "YRATIO"):
+    back = {"kinematic": 2e3, "chaboche": [(2e4, 100.0)]}
+    for plane, more in product(("stress", "strain"), ({}, back)):
+        one = ct.Hill(E, NU, yield_curve=curve, **more).respond(path, plane)
+        two = ct.Mises(E, NU, yield_curve=curve, **more).respond(path, plane)
+        for name in ("stress", "tangent", "zz", "energy", "PEEQ", "PWORK", "PDISS", "YRATIO"):
             size = np.abs(two[name]).max()
             np.testing.assert_allclose(one[name], two[name], atol=1e-9 * size, err_msg=name)
 
 
 @pytest.mark.parametrize("plane", ["stress", "strain"])
-def test_tangent_is_the_derivative(plane: str) -> None:
+@pytest.mark.parametrize("law", [SHEET, MOVING, RECALLED], ids=["isotropic", "linear", "recall"])
+def test_tangent_is_the_derivative(law: ct.Hill, plane: str) -> None:
+    """With recall its symmetric part."""
     random = np.random.default_rng(4)
     for _ in range(20):
         size = 10.0 ** random.uniform(-6.0, -1.0)
         path = np.cumsum(size * random.uniform(-1.0, 1.0, (6, 3)), axis=0)
-        found = SHEET.respond(path, plane)
-        assert np.abs(found["tangent"] - found["derivative"]).max() < 1e-10 * E
+        found = law.respond(path, plane)
+        exact = 0.5 * (found["derivative"] + np.swapaxes(found["derivative"], 1, 2))
+        assert np.abs(found["tangent"] - exact).max() < 1e-10 * E
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.5 * np.pi, 0.3])
+def test_back_stress_moves_the_surface(angle: float) -> None:
+    """A bar cut at an angle: the slope is C times the square of the ratio of the yields, and it
+    yields in reverse after twice the first yield stress.
+    """
+    turned = replace(MOVING)
+    first, _ = yielding(MOVING, angle)
+    ratio = first / SY
+    stress = uniaxial(turned, np.array([0.02, 0.03]), angle)
+    slope = (stress[1] - stress[0]) / 0.01
+    # In the direction of the bar the plastic strain is the equivalent one over the ratio.
+    modulus = MOVING.kinematic * ratio**2
+    assert slope == pytest.approx(modulus * E / (E + modulus), rel=1e-6)
+    top = stress[1]
+    back = np.array([0.03, 0.03 - 1.999 * first / E, 0.03 - 2.001 * first / E - 1e-3])
+    path = uniaxial(turned, np.concatenate([[0.02], back]), angle)
+    assert path[1] - path[2] == pytest.approx(1.999 * first, rel=1e-9)
+    assert top - path[3] < 2.05 * first
+
+
+def uniaxial(law: ct.Hill, strain: np.ndarray, angle: float) -> np.ndarray:
+    """Stress of a bar cut at an angle; the other two components of its stress are zero."""
+    state, free, found = np.zeros(0), np.zeros(2), []
+    for axial in strain:
+        for _ in range(60):
+            raw = _core.material_path(
+                law.law, law.parameters(angle), "stress", np.array([[axial, *free]]), state
+            )
+            tangent = raw["tangent"].reshape(3, 3)
+            step = np.linalg.solve(tangent[1:, 1:], raw["stress"][1:])
+            if np.abs(raw["stress"][1:]).max() < 1e-11 * SY:
+                break
+            free = free - step
+        state = raw["state"]
+        found.append(raw["stress"][0])
+    return np.array(found)
 
 
 def strip(angle: float, element: str = "Q4", pull: float = 0.01) -> ct.Results:
@@ -165,10 +214,16 @@ def test_deck(tmp_path: Path) -> None:
     again = tmp_path / "b.inp"
     ct.write(ct.read(path), again)
     assert ct.read(again).sections[0].material.parameters() == wanted.parameters()
+    path.write_text(DECK.format(", HARDENING=KINEMATIC", "1., 1.2, .9, .8"), encoding="utf-8")
+    moving = ct.read(path).sections[0].material
+    assert isinstance(moving, ct.Hill)
+    assert moving.back_stresses == [(pytest.approx(500.0), 0.0)]
+    assert (moving.first_yield, moving.R22) == (200.0, 1.2)
+    ct.write(ct.read(path), again)
+    assert ct.read(again).sections[0].material.parameters() == moving.parameters()
     for options, row, text in (
         ("", "1., 1.2", "R33"),
         ("", "1., 9., .8, .8", "do not close"),
-        (", HARDENING=KINEMATIC", "1., 1.2, .9, .8", "isotropically"),
     ):
         path.write_text(DECK.format(options, row), encoding="utf-8")
         with pytest.raises(ct.CorotaError, match=text):

@@ -1,6 +1,6 @@
 //! Several numbers at once: the processor's vector registers as a [`Real`], chosen at run time.
 //!
-//! One of the two places with `unsafe` code: a [`Pack`] conjures the token that proves that the
+//! One of the places with `unsafe` code: a [`Pack`] conjures the token that proves that the
 //! processor has the instructions. It is sound because nobody outside this file can name `Pack`:
 //! a kernel meets it only as the type parameter of [`Kernel::run`], and [`dispatch`] calls that
 //! after the processor was asked.

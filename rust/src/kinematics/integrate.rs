@@ -60,12 +60,14 @@ impl<const N: usize> Section<N> {
 
     /// The same section for a geometrically linear analysis.
     pub fn linearized(&self) -> Self {
-        Self { strain: LocalStrain::Linear, finite: false, ..self.clone() }
+        let law = self.law.linearized();
+        Self { law, strain: LocalStrain::Linear, finite: false, ..self.clone() }
     }
 
     /// The same section about a state of such an analysis, with the stiffness of its stress.
     pub fn stressed(&self) -> Self {
-        Self { strain: self.strain.stressed(), finite: false, ..self.clone() }
+        let law = self.law.linearized();
+        Self { law, strain: self.strain.stressed(), finite: false, ..self.clone() }
     }
 }
 

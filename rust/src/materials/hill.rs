@@ -1,15 +1,19 @@
-//! Plasticity of rolled sheet: the yield function of Hill (1948) with isotropic hardening, isotropic
-//! elasticity and an implicit return map in the axes of the material, as one scalar equation.
+//! Plasticity of rolled sheet: the yield function of Hill (1948) with isotropic and kinematic
+//! hardening, isotropic elasticity and an implicit return map in the axes of the material, as one scalar equation.
 //!
 //! Parameters: E, nu, R11, R22, R33, R12 (yield stresses over that of the hardening; of shear over
-//! the square root of a third of it), angle of axis 1, then the numbers of [`Isotropic::new`].
+//! the square root of a third of it), angle of axis 1, number of back-stresses n, n pairs (C, gamma),
+//! then the numbers of [`Isotropic::new`].
 //!
-//! With the step `dp` and the multiplier `g = dp / sy` the stress is `(1 + g A)^-1` times its trial
-//! value, by a matrix of two normal components (in plane strain of the deviator) and the shear.
+//! Back-stresses move along the relative stress (Ziegler 1959): `db = C dp (s - b) / sy - gamma b dp`.
+//! With the step `dp` and the multiplier `g = dp / sy` the relative stress is `(1 + m + g A)^-1` times
+//! its trial value, by a matrix of two normal components (in plane strain of the deviator) and the
+//! shear; `m` is `g` times the moduli of the back-stresses.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::hardening::Isotropic;
+use super::hardening::{BackStress, Isotropic};
 use super::material::{Material, Plane, PointState, Response, TensorOutput, broadcast};
+use super::mises::MAX_BACK;
 use crate::base::Real;
 use crate::base::small::Mat;
 
@@ -18,10 +22,11 @@ use crate::base::small::Mat;
 const MAX_ITERATIONS: usize = 80;
 const TOLERANCE: f64 = 1e-12;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// Members of the state: plastic strain 11, 22, 12 (engineering), equivalent plastic strain, work.
+/// Members of the state: plastic strain 11, 22, 12 (engineering), equivalent plastic strain, work,
+/// back-stresses 11, 22, 12.
 const EQUIVALENT: usize = 3;
 const WORK: usize = 4;
-const MEMBERS: usize = 5;
+const BACK: usize = 5;
 
 #[derive(Clone, Debug)]
 pub struct Hill {
@@ -30,6 +35,7 @@ pub struct Hill {
     shear: f64,
     plane: Plane,
     isotropic: Isotropic,
+    back: Vec<BackStress>,
     /// Strain in the axes of the material by that of the plane.
     turn: Mat<f64, 3>,
     moduli: Mat<f64, 3>,
@@ -48,13 +54,17 @@ pub struct Hill {
 
 /// The state at a trial step.
 struct Trial<T: Real> {
-    /// Multiplier and its derivative by the step.
+    /// Multiplier.
     g: T,
-    dg: T,
+    /// Divisor of the relative stress without the elastic part.
+    divisor: T,
+    /// Relative stress.
     normal: [T; 2],
     shear: T,
-    /// `A` times the stress, returned once more.
+    /// `A` times the relative stress: itself, returned once more, and its multiplier's derivative.
+    flow: [T; 3],
     along: [T; 3],
+    removed: [T; 3],
     q: T,
     /// `sy' - q'`.
     slope: T,
@@ -68,11 +78,11 @@ fn times<T: Real>(m: &Mat<f64, 2>, v: &[T; 2]) -> [T; 2] {
 }
 
 impl Hill {
-    /// `(1 + g A)^-1`.
+    /// `(divisor + g A)^-1`.
     #[inline(always)]
-    fn inverse<T: Real>(&self, g: T) -> Mat<T, 2> {
+    fn inverse<T: Real>(&self, g: T, divisor: T) -> Mat<T, 2> {
         let a = |i: usize, j: usize| g.scale(self.a[i][j]);
-        let (x, y) = (a(0, 0) + T::one(), a(1, 1) + T::one());
+        let (x, y) = (a(0, 0) + divisor, a(1, 1) + divisor);
         let det = (x * y - a(0, 1) * a(1, 0)).recip();
         [[y * det, -(a(0, 1) * det)], [-(a(1, 0) * det), x * det]]
     }
@@ -84,25 +94,57 @@ impl Hill {
     }
 
     #[inline(always)]
-    fn trial<T: Real>(&self, normal: &[T; 2], shear: T, p: T, dp: T) -> Trial<T> {
+    fn trial<T: Real>(
+        &self,
+        normal: &[T; 2],
+        shear: T,
+        old: &[[T; 3]; MAX_BACK],
+        p: T,
+        dp: T,
+    ) -> Trial<T> {
+        let o = T::zero();
         let (sy, h) = self.isotropic.at(p + dp);
         let r = sy.recip();
         let g = dp * r;
         let dg = (T::one() - g * h) * r;
-        let b = self.inverse(g);
+        let (mut modulus, mut d_modulus) = (o, o);
+        let (mut shift, mut d_shift) = ([o; 3], [o; 3]);
+        for (b, alpha) in self.back.iter().zip(old) {
+            let (kept, d_kept) = b.kept(dp);
+            modulus = kept.fma(T::real(b.modulus), modulus);
+            d_modulus = d_kept.fma(T::real(b.modulus), d_modulus);
+            for k in 0..3 {
+                shift[k] = kept.fma(alpha[k], shift[k]);
+                d_shift[k] = d_kept.fma(alpha[k], d_shift[k]);
+            }
+        }
+        let divisor = g.fma(modulus, T::one());
+        let d_divisor = dg.fma(modulus, g * d_modulus);
+        let b = self.inverse(g, divisor);
         let by = |v: &[T; 2]| [b[0][0] * v[0] + b[0][1] * v[1], b[1][0] * v[0] + b[1][1] * v[1]];
-        let by_shear = g.fma(T::real(self.a_shear), T::one()).recip();
-        let (n, s) = (by(normal), shear * by_shear);
-        let [x, y] = by(&times(&self.a, &n));
-        let along = [x, y, s.scale(self.a_shear) * by_shear];
+        let by_shear = g.fma(T::real(self.a_shear), divisor).recip();
+        let n = by(&[normal[0] - shift[0], normal[1] - shift[1]]);
+        let s = (shear - shift[2]) * by_shear;
+        let [fx, fy] = times(&self.a, &n);
+        let flow = [fx, fy, s.scale(self.a_shear)];
+        let [x, y] = by(&[fx, fy]);
+        let along = [x, y, flow[2] * by_shear];
+        // Loss of relative stress by the step.
+        let loss = |k: usize, v: T| d_divisor.fma(v, d_shift[k]) + dg * flow[k];
+        let lost = by(&[loss(0, n[0]), loss(1, n[1])]);
+        let lost_shear = loss(2, s) * by_shear;
         let q = self.equivalent(&n, s).max(T::real(f64::MIN_POSITIVE));
         let inverse = q.recip();
         let w = times(&self.square, &n);
-        let lost = w[0] * along[0] + w[1] * along[1] + (s * along[2]).scale(self.square_shear);
-        let dq = -(lost * inverse * dg);
+        let along_lost =
+            w[0] * lost[0] + w[1] * lost[1] + (s * lost_shear).scale(self.square_shear);
+        let dq = -(along_lost * inverse);
+        let [rx, ry] = times(&self.a, &[dg * n[0] - g * lost[0], dg * n[1] - g * lost[1]]);
+        let removed = [rx, ry, (dg * s - g * lost_shear).scale(self.a_shear)];
         let value = (sy - q) * inverse;
         let derivative = (h - sy * dq * inverse) * inverse;
-        Trial { g, dg, normal: n, shear: s, along, q, slope: h - dq, value, derivative }
+        let slope = h - dq;
+        Trial { g, divisor, normal: n, shear: s, flow, along, removed, q, slope, value, derivative }
     }
 
     /// Step in the lanes that yield; also the lanes in which it did not settle.
@@ -111,14 +153,22 @@ impl Hill {
         &self,
         normal: &[T; 2],
         shear: T,
+        old: &[[T; 3]; MAX_BACK],
         p: T,
         excess: T,
         yields: T::Mask,
     ) -> (T, T::Mask) {
-        let (mut low, mut high) = (T::zero(), excess.scale((1.0 + 1e-9) / self.softest));
+        // Recall can only bring back what the old back-stresses hold.
+        let mut most = excess;
+        for (b, alpha) in self.back.iter().zip(old) {
+            if b.recall > 0.0 {
+                most += self.equivalent(&[alpha[0], alpha[1]], alpha[2]);
+            }
+        }
+        let (mut low, mut high) = (T::zero(), most.scale((1.0 + 1e-9) / self.softest));
         let (mut dp, mut open) = (T::zero(), T::zero());
         for _ in 0..MAX_ITERATIONS {
-            let at = self.trial(normal, shear, p, dp);
+            let at = self.trial(normal, shear, old, p, dp);
             let settled = at.value.abs().lt(T::real(TOLERANCE));
             let short = at.value.lt(T::zero());
             low = T::select(short, dp, low);
@@ -133,6 +183,21 @@ impl Hill {
             }
         }
         (dp, T::real(0.5).lt(open))
+    }
+
+    /// Energy density that the hardening stores.
+    fn hardening_energy(&self, state: &[f64]) -> f64 {
+        let of_back = |(i, b): (usize, &BackStress)| {
+            let alpha = &state[BACK + 3 * i..];
+            self.equivalent(&[alpha[0], alpha[1]], alpha[2]).powi(2) / (2.0 * b.modulus)
+        };
+        self.isotropic.stored(state[EQUIVALENT])
+            + self.back.iter().enumerate().map(of_back).sum::<f64>()
+    }
+
+    /// Sum of the back-stresses in the axes of the material.
+    fn back_stress(&self, state: &[f64]) -> [f64; 3] {
+        std::array::from_fn(|k| (0..self.back.len()).map(|i| state[BACK + 3 * i + k]).sum())
     }
 
     /// Strain and stress in the axes of the material.
@@ -158,16 +223,30 @@ impl Hill {
 impl Material for Hill {
     const NAME: &'static str = "hill";
     const EXAMPLES: &'static [&'static [f64]] = &[
-        &[1000.0, 0.3, 1.0, 1.1, 0.9, 1.05, 0.4, 2.0, 80.0, 20.0, 5.0, 400.0],
-        &[7.0, 0.3, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.05, 0.0],
-        &[7.0, 0.3, 1.0, 1.2, 0.9, 0.8, 0.5, 0.0, 0.05, 0.4],
-        &[7.0, 0.3, 0.9, 1.0, 1.2, 1.1, -1.0, 1.0, 0.05, 0.0, 0.07, 0.01, 0.08, 0.2],
+        // Two back-stresses, one with recall, and hardening of Voce.
+        &[
+            1000.0, 0.3, 1.0, 1.1, 0.9, 1.05, 0.4, 2.0, 60.0, 0.0, 90.0, 30.0, 2.0, 80.0, 20.0,
+            5.0, 400.0,
+        ],
+        &[7.0, 0.3, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.05, 0.0],
+        &[7.0, 0.3, 1.0, 1.2, 0.9, 0.8, 0.5, 0.0, 0.0, 0.05, 0.4],
+        &[7.0, 0.3, 1.0, 1.2, 0.9, 0.8, 0.5, 1.0, 0.7, 0.0, 0.0, 0.05, 0.4],
+        &[7.0, 0.3, 0.9, 1.0, 1.2, 1.1, -1.0, 0.0, 1.0, 0.05, 0.0, 0.07, 0.01, 0.08, 0.2],
     ];
 
     fn new(parameters: &[f64], plane: Plane) -> Result<Self, String> {
-        let &[young, nu, r11, r22, r33, r12, angle, ref numbers @ ..] = parameters else {
-            return Err("hill takes E, nu, four ratios, an angle and a hardening".into());
+        let &[young, nu, r11, r22, r33, r12, angle, count, ref rest @ ..] = parameters else {
+            return Err(
+                "hill takes E, nu, four ratios, an angle, back-stresses, a hardening".into()
+            );
         };
+        let count = count as usize;
+        if count > MAX_BACK || rest.len() < 2 * count {
+            return Err(format!("hill takes at most {MAX_BACK} back-stresses"));
+        }
+        let (pairs, numbers) = rest.split_at(2 * count);
+        let back: Result<Vec<_>, _> =
+            pairs.as_chunks::<2>().0.iter().map(|&[c, gamma]| BackStress::new(c, gamma)).collect();
         if !(young > 0.0 && young.is_finite() && nu > -1.0 && nu < 0.5 && angle.is_finite()) {
             return Err(format!("hill needs E > 0, -1 < nu < 0.5, not {young}, {nu}"));
         }
@@ -227,6 +306,7 @@ impl Material for Hill {
             shear,
             plane,
             isotropic: Isotropic::new(numbers)?,
+            back: back?,
             turn,
             // Isotropic: the same in all axes.
             moduli: whole,
@@ -240,7 +320,7 @@ impl Material for Hill {
         })
     }
     fn n_state(&self) -> usize {
-        MEMBERS
+        BACK + 3 * self.back.len()
     }
     fn moduli(&self) -> Mat<f64, 3> {
         self.moduli
@@ -268,40 +348,74 @@ impl Material for Hill {
         let p: T = state.get(EQUIVALENT);
         let work: T = state.get(WORK);
         let limit = self.isotropic.at(p).0;
-        let excess = self.equivalent(&normal, shear) - limit;
+        let mut old = [[o; 3]; MAX_BACK];
+        let mut relative = [normal[0], normal[1], shear];
+        for i in 0..self.back.len() {
+            for k in 0..3 {
+                old[i][k] = state.get(BACK + 3 * i + k);
+                relative[k] -= old[i][k];
+            }
+        }
+        let excess = self.equivalent(&[relative[0], relative[1]], relative[2]) - limit;
         let yields = o.lt(excess);
         let (mut stress, mut tangent, mut failed) =
             ([normal[0], normal[1], shear], broadcast(&self.moduli), T::none());
         let (mut added, mut dp) = ([o; 3], o);
+        let mut done = work;
+        let mut alpha = old;
         if T::any(yields) {
-            (dp, failed) = self.solve(&normal, shear, p, excess, yields);
-            let at = self.trial(&normal, shear, p, dp);
-            stress = [at.normal[0], at.normal[1], at.shear];
+            (dp, failed) = self.solve(&normal, shear, &old, p, excess, yields);
+            let at = self.trial(&normal, shear, &old, p, dp);
+            for k in 0..3 {
+                stress[k] -= at.g * at.flow[k];
+            }
             let w = match self.plane {
                 Plane::Stress => times(&self.square, &at.normal),
                 Plane::Strain => times(&self.a, &at.normal).map(|v| v.scale(0.5 / self.shear)),
             };
             added = [at.g * w[0], at.g * w[1], (at.g * at.shear).scale(self.square_shear)];
+            let out = match self.plane {
+                Plane::Stress => o,
+                Plane::Strain => added[0] + added[1],
+            };
+            for (i, b) in self.back.iter().enumerate() {
+                let (kept, _) = b.kept(dp);
+                let relative = [at.normal[0], at.normal[1], at.shear];
+                for k in 0..3 {
+                    let gain = (at.g * relative[k]).scale(b.modulus);
+                    alpha[i][k] = kept * (old[i][k] + gain);
+                    // The mean of both ends does the work.
+                    let strain = if k < 2 { added[k] + out } else { added[k] };
+                    done = ((old[i][k] + alpha[i][k]) * strain).fma(T::real(0.5), done);
+                }
+            }
             let mut size = limit;
             for v in [normal[0].abs(), normal[1].abs(), shear.abs()] {
                 size += v;
             }
             let flows = size.scale(ROUNDING).lt(excess);
-            let b = self.inverse(at.g);
-            let by_shear = at.g.fma(T::real(self.a_shear), T::one()).recip();
-            let factor = T::select(flows, at.dg / (at.q * at.slope), o);
-            // In the axes of the material, then in those of the plane.
+            let b = self.inverse(at.g, at.divisor);
+            let by_shear = at.g.fma(T::real(self.a_shear), at.divisor).recip();
+            let factor = T::select(flows, (at.q * at.slope).recip(), o);
+            // In the axes of the material, then in those of the plane. The stress loses `g A` times
+            // the relative stress.
             let mut d = [[o; 3]; 3];
             for i in 0..2 {
+                let lost =
+                    |j: usize| at.g * (b[0][j].scale(self.a[i][0]) + b[1][j].scale(self.a[i][1]));
+                let unit = |j: usize| if i == j { T::one() } else { o };
+                let left = [unit(0) - lost(0), unit(1) - lost(1)];
                 for j in 0..2 {
-                    let c = b[i][0].scale(self.elastic[0][j]) + b[i][1].scale(self.elastic[1][j]);
+                    let c = left[0].scale(self.elastic[0][j]) + left[1].scale(self.elastic[1][j]);
                     d[i][j] = c + T::real(self.volume);
                 }
             }
-            d[2][2] = by_shear.scale(self.shear);
+            d[2][2] = (T::one() - at.g * by_shear.scale(self.a_shear)).scale(self.shear);
+            // Recall makes the tangent unsymmetric; its symmetric part is returned.
             for i in 0..3 {
                 for j in 0..3 {
-                    d[i][j] -= factor * at.along[i] * at.along[j];
+                    let both = at.removed[i] * at.along[j] + at.along[i] * at.removed[j];
+                    d[i][j] -= factor * both.scale(0.5);
                 }
             }
             for i in 0..3 {
@@ -316,11 +430,16 @@ impl Material for Hill {
                 }
             }
         }
+        for (i, rows) in alpha.iter().enumerate().take(self.back.len()) {
+            for (k, v) in rows.iter().enumerate() {
+                state.set(BACK + 3 * i + k, *v);
+            }
+        }
         for i in 0..3 {
             state.set(i, plastic[i] + added[i]);
         }
         state.set(EQUIVALENT, p + dp);
-        state.set(WORK, work + self.isotropic.work(p, dp));
+        state.set(WORK, done + self.isotropic.work(p, dp));
         stress[0] += pressure;
         stress[1] += pressure;
         let mut out = [o; 3];
@@ -364,25 +483,36 @@ impl Material for Hill {
                     Plane::Stress => 0.0,
                     Plane::Strain => (s[0] + s[1] + self.normal(s, state)) / 3.0,
                 };
-                let q = self.equivalent(&[m[0] - mean, m[1] - mean], m[2]);
+                let b = self.back_stress(state);
+                let q = self.equivalent(&[m[0] - mean - b[0], m[1] - mean - b[1]], m[2] - b[2]);
                 q / self.isotropic.at(state[EQUIVALENT]).0
             }
             2 => state[WORK],
-            _ => state[WORK] - self.isotropic.stored(state[EQUIVALENT]),
+            _ => state[WORK] - self.hardening_energy(state),
         }
     }
     fn tensors(&self) -> &'static [TensorOutput] {
-        &[TensorOutput { name: "PE", engineering: true }]
+        const PLASTIC: TensorOutput = TensorOutput { name: "PE", engineering: true };
+        const MOVED: TensorOutput = TensorOutput { name: "ALPHA", engineering: false };
+        if self.back.is_empty() { &[PLASTIC] } else { &[PLASTIC, MOVED] }
     }
-    fn tensor(&self, _: usize, state: &[f64]) -> [f64; 4] {
+    fn tensor(&self, i: usize, state: &[f64]) -> [f64; 4] {
         // The transposed turn of stresses is the inverse one of strains, with half the shear.
         let t = &self.turn;
+        if i == 1 {
+            // The deviator; in plane stress the state holds the tensor with zero 33.
+            let b = self.back_stress(state);
+            let [xx, yy, xy] = std::array::from_fn(|i| (0..3).map(|k| t[k][i] * b[k]).sum::<f64>());
+            let mean = if self.plane == Plane::Stress { (xx + yy) / 3.0 } else { 0.0 };
+            let zz = if self.plane == Plane::Stress { -mean } else { -xx - yy };
+            return [xx - mean, yy - mean, zz, xy];
+        }
         let p = [state[0], state[1], 0.5 * state[2]];
         let [xx, yy, xy] = std::array::from_fn(|i| (0..3).map(|k| t[k][i] * p[k]).sum::<f64>());
         [xx, yy, -(state[0] + state[1]), 2.0 * xy]
     }
     fn ideal(&self) -> bool {
-        self.isotropic.saturates()
+        self.isotropic.saturates() && self.back.iter().all(|b| b.recall > 0.0)
     }
     fn plastic_member(&self) -> Option<usize> {
         Some(EQUIVALENT)

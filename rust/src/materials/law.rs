@@ -91,6 +91,9 @@ macro_rules! law {
                 })+
                 Err(format!("no material named {name:?}; there are {:?}", Self::NAMES))
             }
+            pub fn linearized(&self) -> Self {
+                match self { $(Law::$name(m) => Law::$name(m.clone().linearized())),+ }
+            }
             pub fn n_state(&self) -> usize {
                 match self { $(Law::$name(m) => m.n_state()),+ }
             }

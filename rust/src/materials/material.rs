@@ -85,6 +85,10 @@ pub trait Material: Sized {
     fn line(_parameters: &[f64]) -> Result<Self, String> {
         Err(format!("{} is not for trusses and beams", Self::NAME))
     }
+    /// The law for infinitesimal displacements.
+    fn linearized(self) -> Self {
+        self
+    }
     /// Members of the history at a point.
     fn n_state(&self) -> usize {
         0

@@ -3,8 +3,10 @@
 
 pub mod arruda_boyce;
 pub mod by_temperature;
+pub mod c_function;
 pub mod clock;
 pub mod elastic;
+pub mod external;
 pub mod hardening;
 pub mod hill;
 pub mod hyperelastic;
@@ -17,6 +19,7 @@ pub mod orthotropic;
 pub mod polynomial;
 pub mod ramberg_osgood;
 pub mod tabulated;
+pub mod umat;
 pub mod viscoelastic;
 pub mod viscoplastic;
 
@@ -40,6 +43,8 @@ macro_rules! laws {
             arruda_boyce::ArrudaBoyce,
             hyperfoam::Hyperfoam,
             tabulated::Tabulated,
+            c_function::CFunction,
+            umat::Umat,
         ];
     };
 }

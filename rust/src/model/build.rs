@@ -94,7 +94,10 @@ pub fn build(
         E: Element<N, M, A>,
     {
         let state = if E::LINE { State::Line } else { State::Plane(input.plane) };
-        let law = Law::new(&input.law, &input.parameters, state)?;
+        let mut law = Law::new(&input.law, &input.parameters, state)?;
+        if LocalStrain::new(&input.local_strain)? != LocalStrain::Logarithmic {
+            law = law.linearized();
+        }
         if E::LINE && E::MEMORY > 0 && law.n_state() > 0 && input.fibers.is_empty() {
             return Err(format!("{} with {} needs the fibers of its profile", E::NAME, input.law));
         }

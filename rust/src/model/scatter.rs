@@ -1,6 +1,6 @@
 //! Where chunks of elements add their forces and stiffnesses.
 //!
-//! One of the two places with `unsafe` code: several threads add to the same arrays. It is
+//! One of the places with `unsafe` code: several threads add to the same arrays. It is
 //! sound because chunks that run at the same time share no node (they have the same color),
 //! so they never touch the same entry; the order of the colors is fixed, so sums do not
 //! depend on the number of threads.

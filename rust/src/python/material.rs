@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use crate::base::Dual;
+use crate::materials::c_function::Call;
+use crate::materials::external::{self, Convention};
+use crate::materials::umat::Subroutine;
 use crate::materials::{Clock, Law, Plane, PointState, State};
 use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -22,15 +25,28 @@ pub fn plane(name: &str) -> PyResult<Plane> {
     }
 }
 
+/// Let laws of a convention, ``c_function`` or ``umat``, call the function at an address; returns its
+/// handle.
+#[pyfunction]
+fn register_function(convention: &str, address: usize) -> PyResult<usize> {
+    if address == 0 {
+        return Err(PyValueError::new_err("there is no function at the address 0"));
+    }
+    match [Call::NAME, Subroutine::NAME].into_iter().find(|name| *name == convention) {
+        Some(name) => Ok(external::register(name, address)),
+        None => Err(PyValueError::new_err(format!("no convention {convention:?}"))),
+    }
+}
+
 /// Answer of a law to a sequence of strains, each committed before the next.
 ///
 /// ``strain`` (n, 3) rows xx, yy, xy (engineering shear); ``state`` the history at the start,
 /// empty for a virgin point; ``times`` (n,) the total times of the strains, after ``start``, empty
-/// for none; ``lasting`` whether slow processes take part. Returns a dict of flat arrays: stress (n, 3), tangent (n, 3, 3),
+/// for none; ``lasting`` whether slow processes take part; ``small`` whether displacements are. Returns a dict of flat arrays: stress (n, 3), tangent (n, 3, 3),
 /// derivative (n, 3, 3; exact, by forward differentiation), zz (n, 2; strain and stress
 /// through the thickness), energy (n), state (n, members) and the outputs by name.
 #[pyfunction]
-#[pyo3(signature = (law, parameters, plane_name, strain, state, times=Vec::new(), start=0.0, lasting=true))]
+#[pyo3(signature = (law, parameters, plane_name, strain, state, times=Vec::new(), start=0.0, lasting=true, small=false))]
 #[allow(clippy::too_many_arguments)]
 fn material_path<'py>(
     py: Python<'py>,
@@ -42,9 +58,13 @@ fn material_path<'py>(
     times: Vec<f64>,
     start: f64,
     lasting: bool,
+    small: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let law =
+    let mut law =
         Law::new(law, &parameters, stress_state(plane_name)?).map_err(PyValueError::new_err)?;
+    if small {
+        law = law.linearized();
+    }
     let members = law.n_state();
     let mut old = state.as_slice()?.to_vec();
     old.resize(members, 0.0);
@@ -135,6 +155,7 @@ fn strain_measure<'py>(
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(register_function, m)?)?;
     m.add_function(wrap_pyfunction!(material_path, m)?)?;
     m.add_function(wrap_pyfunction!(strain_measure, m)?)?;
     Ok(())

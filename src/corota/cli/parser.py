@@ -442,6 +442,12 @@ def _reading(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--allow-include", action="store_true", help="allow *INCLUDE outside the folder of the deck"
     )
+    parser.add_argument(
+        "--allow-library",
+        dest="library",
+        metavar="PATH",
+        help="load this library for *USER MATERIAL; its code runs with your rights",
+    )
 
 
 def _pair(text: str) -> tuple[str, str]:

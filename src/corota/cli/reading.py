@@ -42,6 +42,7 @@ def read_input(name: str, args: Any) -> Model:
         as_written=args.as_written,
         parameters=dict(getattr(args, "parameters", ())),
         stages=getattr(args, "stages", ()),
+        library=getattr(args, "library", None),
     )
 
 

@@ -31,6 +31,7 @@ def run(args: Any, terminal: Terminal) -> int:
             "allow_include": args.allow_include,
             "as_written": args.as_written,
             "stages": tuple(args.stages),
+            "library": args.library,
         },
     )
 

@@ -51,6 +51,7 @@ def run(args: Any, terminal: Terminal) -> int:
             "allow_include": args.allow_include,
             "as_written": args.as_written,
             "stages": tuple(args.stages),
+            "library": args.library,
         },
     )
     table = Path(args.output or f"{deck.stem}_sweep.csv")

@@ -48,6 +48,7 @@ def read(
     as_written: bool = False,
     parameters: Mapping[str, float] | None = None,
     stages: Sequence[str] = (),
+    library: str | os.PathLike[str] | None = None,
 ) -> Model:
     """Read a model from a deck.
 
@@ -68,6 +69,8 @@ def read(
     stages : sequence of str, optional
         Bodies that are measured, such as ``"HUB axis=rotation"``
         (:meth:`corota.model.stages.Stages.add_stage`).
+    library : path-like, optional
+        Library with the UMAT of ``*USER MATERIAL``. Its code is loaded: name one that you trust.
 
     Returns
     -------
@@ -98,6 +101,7 @@ def read(
             allow_include=allow_include,
             as_written=as_written,
             parameters=parameters,
+            library=library,
         )
         for text in stages:
             model.add_stage(text)

@@ -14,11 +14,12 @@ from corota.model.plasticity import Mises
 
 @dataclass
 class Hill(Mises):
-    """Plasticity that depends on the direction in a rolled sheet, with isotropic hardening.
+    """Plasticity that depends on the direction in a rolled sheet, with combined hardening.
 
     ``F (s22 - s33)^2 + G (s33 - s11)^2 + H (s11 - s22)^2 + 2 N s12^2 = sy^2`` in the axes of the
     material, whose first one is the rolling direction (`orientation` of the section). They turn
-    with the body. Yield stresses and curves are those of :class:`~corota.Mises`.
+    with the body. Yield stresses, curves and back-stresses are those of :class:`~corota.Mises`; a
+    back-stress moves along the stress less itself.
 
     Parameters
     ----------
@@ -34,10 +35,10 @@ class Hill(Mises):
 
     Notes
     -----
-    As ``*POTENTIAL``. With all ratios 1 it is Mises plasticity. Back-stresses and rates are
-    refused.
+    As ``*POTENTIAL``. With all ratios 1 it is Mises plasticity. Rates are refused.
 
-    Source: R. Hill, *Proc. R. Soc. Lond. A* 193 (1948) 281-297.
+    Sources: R. Hill, *Proc. R. Soc. Lond. A* 193 (1948) 281-297; H. Ziegler, *Q. Appl. Math.* 17
+    (1959) 55-65.
 
     Examples
     --------
@@ -56,11 +57,8 @@ class Hill(Mises):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.rate is not None or self.back_stresses:
-            raise InputError(
-                "Hill plasticity hardens isotropically: leave rate and back-stresses out",
-                self.where,
-            )
+        if self.rate is not None:
+            raise InputError("Hill plasticity has no rate: leave it out", self.where)
         self.law = "hill"
         for name in ("R11", "R22", "R33", "R12"):
             _positive(getattr(self, name), name, self.where)
@@ -99,9 +97,11 @@ class Hill(Mises):
         return super().first_yield * self.R11
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
-        """``E, nu, R11, R22, R33, R12``, angle of axis 1 from x [rad], hardening as ``Mises``."""
+        """``E, nu, R11, R22, R33, R12``, angle of axis 1 from x [rad], then as ``Mises``."""
         ratios = (self.E, self.nu, self.R11, self.R22, self.R33, self.R12, orientation)
-        return [*(float(v) for v in ratios), *self._hardening()]
+        back = [value for pair in self.back_stresses for value in pair]
+        count = float(len(self.back_stresses))
+        return [*(float(v) for v in ratios), count, *back, *self._hardening()]
 
 
 __all__ = ["Hill"]

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 class SinglePoint(Material):
     """A law of the core that can be evaluated at a single point."""
 
+    @property
+    def small_at_points(self) -> bool:
+        """Whether a single point is evaluated as in small displacements."""
+        return False
+
     def respond(
         self,
         strain: ArrayLike,
@@ -57,6 +62,7 @@ class SinglePoint(Material):
             np.asarray(time, float).tolist(),
             0.0,
             lasting,
+            self.small_at_points,
         )
         shapes = {"stress": (n, 3), "tangent": (n, 3, 3), "derivative": (n, 3, 3), "zz": (n, 2)}
         shapes["state"] = (n, -1)

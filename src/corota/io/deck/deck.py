@@ -30,6 +30,7 @@ from corota.io.deck.drafts import (
 from corota.io.deck.lexer import Card, Row, key
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Callable, Iterable
 
     from corota.io.deck.amplitudes import Curve
@@ -58,6 +59,8 @@ class Deck:
     #: Element and plane (or "") by the deck's name of an element.
     element_map: dict[str, tuple[str, str]] = field(default_factory=dict)
     literal: bool = False
+    #: Library that ``*USER MATERIAL`` may load.
+    library: str | os.PathLike[str] | None = None
     #: Says which files the deck may read.
     lexer: Lexer | None = None
     root: Scope = field(default_factory=Scope)

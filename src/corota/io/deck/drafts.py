@@ -158,6 +158,8 @@ class MaterialDraft:
     #: Numbers of Johnson-Cook hardening, and of its heat.
     johnson_cook: list[float] | None = None
     johnson_cook_card: Card | None = None
+    #: State variables of a user subroutine.
+    states: int = 0
     specific_heat: float = 0.0
     #: Ratios of Hill's yield function, with their card.
     potential: tuple[float, ...] = ()

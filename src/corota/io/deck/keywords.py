@@ -111,6 +111,10 @@ _TABLE: dict[str, Keyword] = {
     "HYPERFOAM": Keyword(
         card("hyperelastic.hyperfoam"), "N TESTDATAINPUT POISSON MODULI", place="model"
     ),
+    "USER MATERIAL": Keyword(
+        card("user_material.user_material"), "CONSTANTS TYPE", "UNSYMM", place="model"
+    ),
+    "DEPVAR": Keyword(card("user_material.depvar"), "", "DELETE", place="model"),
     "VISCOELASTIC": Keyword(card("viscoelastic.viscoelastic"), "TIME", place="model"),
     "TRS": Keyword(card("viscoelastic.trs"), "DEFINITION", place="model"),
     **{

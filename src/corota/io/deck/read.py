@@ -35,6 +35,7 @@ def read_deck(
     allow_include: bool = False,
     as_written: bool = False,
     parameters: Mapping[str, float] | None = None,
+    library: str | os.PathLike[str] | None = None,
 ) -> Model:
     """Read a CalculiX or Abaqus deck.
 
@@ -51,6 +52,8 @@ def read_deck(
         Take reduced integration literally (CPS4R becomes Q4R instead of Q4I).
     parameters : mapping of str to float, optional
         Values of ``*PARAMETER`` names that replace those of the deck.
+    library : path-like, optional
+        Library with the UMAT of ``*USER MATERIAL``. Its code is loaded: name one that you trust.
 
     Returns
     -------
@@ -67,6 +70,7 @@ def read_deck(
     lexer = Lexer(Path(path), allow_include, parameters)
     cards = lexer.read()
     deck = Deck(lenient=lenient, element_map=_checked_map(element_map or {}), literal=as_written)
+    deck.library = library
     deck.diagnostics, deck.lexer = lexer.diagnostics, lexer
     saved = None
     if (reads := card_that_reads(cards)) is not None:

@@ -17,7 +17,6 @@ IGNORED: dict[str, str] = {
     "NOANALYSIS": "use the command check",
     "PRINT": "it controls the message file",
     "FILEFORMAT": "it controls the result file of another program",
-    "DEPVAR": "laws know their own state variables",
     "USERSUBROUTINE": "no user subroutine is called",
     **dict.fromkeys(
         (
@@ -108,7 +107,6 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "USERMATERIAL",
             "MOHRCOULOMB",
             "CHANGEPLASTIC",
             "DAMAGEINITIATION",

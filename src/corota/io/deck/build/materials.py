@@ -28,7 +28,12 @@ if TYPE_CHECKING:
 
 build_mises = lazy("corota.io.deck.cards.plastic:build_mises")
 build_viscoelastic = lazy("corota.io.deck.cards.viscoelastic:build_viscoelastic")
+build_umat = lazy("corota.io.deck.cards.user_material:build_umat")
 build_johnson_cook = lazy("corota.io.deck.cards.rates:build_johnson_cook")
+
+
+#: Law of a draft whose material is a subroutine.
+USER_LAW = "USERMATERIAL"
 
 
 def build_material(deck: Deck, draft: MaterialDraft, temperature: float | None) -> Material | None:
@@ -48,6 +53,9 @@ def build_material(deck: Deck, draft: MaterialDraft, temperature: float | None) 
             "heats *PLASTIC, HARDENING=JOHNSON COOK alone, and there is no conduction"
         )
     try:
+        if draft.law == USER_LAW:
+            common = {"name": draft.name, "where": draft.law_where, "rho": draft.rho}
+            return build_umat(deck, draft, common | {"rayleigh": draft.damping})  # type: ignore[no-any-return]
         found = _by_temperature(draft)
         if draft.prony_card is not None and found is not None:
             relaxing: Material = build_viscoelastic(draft, found, temperature)

@@ -13,6 +13,7 @@ import numpy as np
 
 from corota.errors import UnsupportedError
 from corota.io.atomic_file import replace_text
+from corota.io.deck.cards.user_material import user_material_cards
 from corota.io.deck.laws import law_cards
 from corota.io.deck.write.attachments import (
     attachment_cards,
@@ -32,6 +33,7 @@ from corota.io.deck.write.text import number, plain, rows
 from corota.io.deck.write.thermal import expansion_cards, initial_cards
 from corota.mesh import EDGES
 from corota.mesh.parts import cells_of, nodes_of_cells
+from corota.model.compiled import Umat
 from corota.model.local_strain import dialect_strain
 from corota.model.material_table import MaterialTable
 from corota.model.steps import Static, Step
@@ -220,7 +222,11 @@ class _Writer:
         relaxing = material
         if isinstance(material, Viscoelastic):
             material = material.parent
-        law = law_cards(material, number)
+        law = (
+            user_material_cards(material, number)
+            if isinstance(material, Umat)
+            else law_cards(material, number)
+        )
         if law is None:
             raise UnsupportedError(
                 f"a material of type {type(material).__name__} cannot be written to a deck"

@@ -1,0 +1,105 @@
+"""Cards of user subroutines: ``*USER MATERIAL`` and ``*DEPVAR``."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from corota.errors import InputError
+from corota.io.deck.cards.material import open_material
+from corota.model.compiled import Umat
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import MaterialDraft
+    from corota.io.deck.lexer import Card
+    from corota.model.materials import Material
+
+#: Constants on a data line.
+PER_ROW = 8
+
+
+def user_material(deck: Deck, card: Card) -> None:
+    """``*USER MATERIAL, CONSTANTS=``: ``PROPS`` of the subroutine UMAT."""
+    found = open_material(deck, card)
+    deck.choice(card, "TYPE", ("MECHANICAL",), "MECHANICAL")
+    count = deck.parameter_integer(card, "CONSTANTS", 0, 0)
+    values: list[float] = []
+    for row in card.rows():
+        for column in range(min(PER_ROW, count - len(values))):
+            value = deck.real(card, row, column, f"constant {len(values) + 1}", 0.0)
+            if value is None:
+                return
+            values.append(value)
+        deck.extra_fields(card, row, PER_ROW)
+    if found is None:
+        return
+    if found.law:
+        message = f"material {found.name} already has constants ({found.law_where})"
+        deck.error(card, card.where, message)
+        return
+    found.law, found.law_where = "USERMATERIAL", card.where
+    if not card.has("CONSTANTS") or len(values) < count:
+        deck.error(
+            card,
+            card.where,
+            f"CONSTANTS= is the number of constants on the data lines; there are {len(values)}",
+        )
+        return
+    if deck.library is None:
+        deck.error(
+            card,
+            card.where,
+            f"material {found.name} is the code of a library, and no deck loads code by itself",
+            hint="name a library that you trust: --allow-library PATH (Python: library=PATH)",
+        )
+        return
+    found.law_card, found.constants = card, [(0.0, values)]
+
+
+def depvar(deck: Deck, card: Card) -> None:
+    """``*DEPVAR``: number of solution-dependent state variables."""
+    found = open_material(deck, card)
+    rows = list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: the number of state variables")
+        return
+    count = deck.real(card, rows[0], 0, "the number of state variables")
+    if count is None or found is None:
+        return
+    if count < 0 or count != int(count):
+        deck.row_error(card, rows[0], 0, f"a whole number >= 0 is expected, not {count:g}")
+        return
+    # Further lines are names for output.
+    found.states = int(count)
+
+
+def build_umat(deck: Deck, draft: MaterialDraft, common: dict[str, Any]) -> Material:
+    """The material of a draft with ``*USER MATERIAL``.
+
+    Raises
+    ------
+    InputError
+        If another card of the material does not go with it.
+    """
+    other = (draft.plastic, draft.rate_card, draft.prony_card, draft.johnson_cook)
+    if any(part is not None for part in other) or draft.expansion:
+        raise InputError(
+            "*USER MATERIAL stands alone: its subroutine gives the whole stress", draft.law_where
+        )
+    assert deck.library is not None
+    return Umat(deck.library, draft.constants[0][1], draft.states, **common)
+
+
+def user_material_cards(material: Umat, number: Callable[[float], str]) -> str:
+    """The cards of a UMAT; the library is named on the command line."""
+    values = [number(v) for v in material.constants]
+    rows = [values[i : i + PER_ROW] for i in range(0, len(values), PER_ROW)]
+    text = f"*USER MATERIAL, CONSTANTS={len(values)}\n"
+    text += "".join(", ".join(row) + "\n" for row in rows)
+    return text + (f"*DEPVAR\n{material.states}\n" if material.states else "")
+
+
+__all__ = ["build_umat", "depvar", "user_material", "user_material_cards"]
