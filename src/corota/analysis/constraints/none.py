@@ -28,6 +28,9 @@ class Identity(LinearizedConstraints):
     def __init__(self) -> None:
         pass
 
+    def __repr__(self) -> str:
+        return "Identity()"
+
     def gather(self, force: Floats) -> Floats:
         return force
 
