@@ -79,7 +79,8 @@ class ModalStepper:
         self.lin = lin
         self.n = n = max(round(step.period / step.first_increment), 1)
         self.dt = dt = step.period / n
-        loads, moves = _courses(system, lin, n, dt)
+        # Central differences of the last increment that may be taken need those behind it.
+        loads, moves = _courses(system, lin, min(n, step.max_increments + 2), dt)
         self.c, self.s = loads.coefficients, moves.coefficients
         self.model = model = Reduced(system, state, step, number, loads.matrix, moves.matrix)
         self.propagator = _advance(model, dt)
@@ -164,7 +165,7 @@ def leave(system: System, state: State, step_time: float) -> None:
 
 
 def _courses(system: System, lin: LinearMotion, n: int, dt: float) -> tuple[Patterns, Patterns]:
-    """Loads and moves of supports at the ends of all increments, as few patterns."""
+    """Loads and moves of supports at the ends of the first n increments, as few patterns."""
     loads, moves = Patterns(system.n_dofs), Patterns(system.n_dofs)
     conditions = system.conditions
     for i in range(n + 1):
