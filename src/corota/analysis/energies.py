@@ -137,6 +137,7 @@ class Energies:
             for name, energy in term.energies().items():
                 terms[name] = terms.get(name, 0.0) + energy
         stored, pressed = terms.pop("ALLSE", 0.0), terms.pop("ALLPW", 0.0)
+        work = self.work + terms.pop("ALLWK", 0.0)
         inside = (
             {"ALLIE": self.internal, "ALLTH": 0.0}
             if sums is None
@@ -154,7 +155,7 @@ class Energies:
             "ALLKE": self.kinetic,
             "ALLVD": self.viscous,
             **terms,
-            "ALLWK": self.work,
+            "ALLWK": work,
         }
         gained = ("ALLIE", "ALLKE", "ALLVD", "ALLFD", "ALLSD", "ALLCL")
         own["ETOTAL"] = sum(own[k] for k in gained) - own["ALLWK"] - own["ALLTH"]

@@ -114,6 +114,9 @@ class SaddlePointSystem:
         self.steps = self.whole = 0
         #: Multipliers of redundant constraints.
         self.dropped: set[int] = set()
+        #: Distance by which supports violate each constraint that they fix, after the last
+        #: correction [length].
+        self.left: Floats = np.zeros(n)
 
     # -- pattern -----------------------------------------------------------------------
 
@@ -216,7 +219,10 @@ class SaddlePointSystem:
                     column -= self._multiply(data, move)
                     np.subtract.at(column, rest.rows, rest.values * move[rest.columns])
             data[self._mask(constrained)] = 0.0
-            fixed = self._fixed(coupling, data)
+            fixed, length = self._fixed(coupling, data)
+            self.left = np.zeros(self.n)
+            self.left[fixed] = b[fixed + self.nf, 0] / length
+            self.left = self.communicator.broadcast(self.left)
             self._take_out(fixed, data, b, release)
             on = self.diagonal[constrained]
             # Rounding, as of a rigid circle that turns about its center, is no pivot.
@@ -260,8 +266,15 @@ class SaddlePointSystem:
         """Displacements of all dofs of a solution."""
         return self._link.expand(x[: self.nf])
 
-    def _fixed(self, coupling: Coupling, data: Floats) -> Ints:
-        """Multipliers of constraints whose gradients vanish at all dofs that can move."""
+    def _fixed(self, coupling: Coupling, data: Floats) -> tuple[Ints, Floats]:
+        """Multipliers of constraints whose gradients vanish at all dofs that can move.
+
+        Returns
+        -------
+        multipliers : ndarray of int
+        lengths : ndarray of float
+            Of their gradients at all dofs.
+        """
         whole = np.zeros(self.n)
         np.add.at(whole, coupling.rows.columns, coupling.rows.values**2)
         border = np.flatnonzero((self.columns >= self.nf) & (self.rows < self.nf))
@@ -270,7 +283,8 @@ class SaddlePointSystem:
         left = self.communicator.sum(left)
         fixed = np.flatnonzero((whole > 0.0) & (left <= FIXED**2 * whole))
         out: Ints = self.communicator.broadcast(fixed)
-        return out
+        length = np.sqrt(whole[out])
+        return out, np.where(length > 0.0, length, 1.0)
 
     def _take_out(self, multipliers: Ints, data: Floats, b: Floats, release: Floats) -> None:
         """Remove constraints from a matrix and its right-hand sides, in place."""

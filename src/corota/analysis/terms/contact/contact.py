@@ -115,6 +115,8 @@ class ContactTerm(Term):
         #: Work of the pressures in static increments on gaps that change, less the energy that laws
         #: store; none where surfaces stay closed.
         self.pressure_work = 0.0
+        #: Work of what drives the slip in static increments, beyond that of the trapezoidal rule.
+        self.late_work = 0.0
         self._pressure = np.zeros(system.n_dofs)
         # Dof of each variable 3 node + component, -1 where there is none.
         self._dof = np.full(3 * len(system.per_node) + 1, -1, np.int64)
@@ -537,7 +539,10 @@ class ContactTerm(Term):
             states,
             strict=True,
         ):
+            late = pair.beyond_trapezoid
             pair.commit(terms, q, before, state == CLOSED)
+            if self.damps:
+                self.late_work += pair.beyond_trapezoid - late
         # The equations of both ends have these forces, and so has the work of the loads.
         before, self._damping_force = self._damping_force, np.zeros(0)
         if contact_state.damping is not None:
@@ -587,6 +592,7 @@ class ContactTerm(Term):
             "ALLFD": float(sum(pair.friction_work for pair in self.pairs)),
             "ALLSD": self.damping_work,
             "ALLPW": self.pressure_work,
+            "ALLWK": self.late_work,
             "ALLCL": float(sum(p.law_energy(t) for p, t in zip(self.pairs, terms, strict=False))),
         }
 

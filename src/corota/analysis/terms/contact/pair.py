@@ -115,6 +115,8 @@ class Pair:
             self.beside = (left, right)
         self.slid = np.zeros(self.n)  # slip so far [length]
         self.friction_work = 0.0
+        #: What of it the trapezoidal rule misses, of tractions that grew before the surfaces slid.
+        self.beyond_trapezoid = 0.0
         self.seen = False  # whether the surfaces have been near each other
         #: A rigid curve as straight pieces in the reference configuration, made when needed.
         self.chords: Floats | None = None
@@ -501,6 +503,8 @@ class Pair:
             mean = np.where(whole, q, 0.5 * (before + q))
             # Constraints that opened may have slid back without traction.
             self.friction_work += float(np.maximum(-mean * terms.slip, 0.0).sum())
+            grown = (0.5 * (before - q) * terms.slip)[whole]
+            self.beyond_trapezoid += float(np.maximum(grown, 0.0).sum())
 
 
 def _surfaces(edges: Ints, nodes: Ints) -> Ints:

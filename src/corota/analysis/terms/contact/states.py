@@ -130,10 +130,11 @@ def let_slip(
 ) -> tuple[Floats, Floats, int, States]:
     """Let constraints slip at once that a correction would load far beyond friction.
 
-    Otherwise a large displacement of supports distorts the mesh before anything slips.
+    Otherwise a large displacement of supports distorts the mesh before anything slips. What
+    supports move over the surface slips in any case: no traction can hold it.
     """
     early = problem.corrections <= 2 and not problem.bounded
-    for _ in range(MAX_SLIP_CORRECTIONS if early else 0):
+    for _ in range(MAX_SLIP_CORRECTIONS):
         new = [s.copy() for s in states]
         slip_directions = dict(problem.slip_directions)
         for s, (pair, _, (p, q)) in zip(new, problem.pairs(at.contact_state), strict=True):
@@ -141,7 +142,15 @@ def let_slip(
                 continue
             p1 = p + found[1][pair.first : pair.first + pair.n, 0]
             q1 = q + found[1][pair.first + pair.n : pair.first + pair.width, 0]
-            over = (s == CLOSED) & (np.abs(q1) > FRICTION_EXCESS * pair.bound(np.maximum(p1, p)))
+            left = problem.border.left[pair.first + pair.n : pair.first + pair.width]
+            bound = pair.bound(np.maximum(p1, p))
+            moved = (s == CLOSED) & (np.abs(left) > pair.noise) & np.isfinite(bound)
+            q1[moved] = -left[moved]
+            slips = pair.first + pair.n + np.flatnonzero(moved)
+            problem.border.dropped.difference_update(slips.tolist())
+            over = moved
+            if early:
+                over = over | (s == CLOSED) & (np.abs(q1) > FRICTION_EXCESS * bound)
             s[over] = SLIPPING
             slip_direction = problem.slip_directions[pair.first]
             slip_directions[pair.first] = np.where(
