@@ -176,6 +176,28 @@ def test_a_ring_squeezed_between_rounds(method: str, radius: float, side: str) -
 
 
 @pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("n", [40, 80])
+def test_a_ring_between_meshed_plates_does_not_roll(method: str, n: int) -> None:
+    """It touches with gaps of some 1e-16 of either sign, which must not say that it slips."""
+    ring = ct.mesh.annulus(9.8, 10.2, 2, 80)
+    plates = {
+        "upper": ct.mesh.rectangle(6.0, 1.0, n, 2, origin=(-3.0, 10.2)),
+        "lower": ct.mesh.rectangle(6.0, 1.0, n, 2, origin=(-3.0, -11.2)),
+    }
+    mesh = ct.mesh.assembly(ring=ring, **plates)
+    model = ct.Model(mesh)
+    model.section("ring", element="Q4I", material=ct.Elastic(E=1e5, nu=0.0))
+    for name, face, moves in (("upper", "bottom", -0.05), ("lower", "top", 0.0)):
+        model.section(name, element="Q4I", material=ct.Elastic(E=1e9, nu=0.0))
+        model.contact("ring.outer", f"{name}.{face}", friction=0.3, method=method, name=name)
+        model.fix(mesh.nodes_of(name), x=0.0, y=moves)
+    results = ct.solve(model, ct.Static(), threads=1)
+    thin = 0.05 * 1e5 * 0.4**3 / 12.0 / (0.14878 * 10.0**3)
+    assert -results.frames[-1].scalars["upper: force y"] == pytest.approx(thin, rel=0.01)
+    assert np.abs(results.frames[-1].U).max() < 0.1
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_blocks_that_overhang_by_less_than_the_harmonic_limit_stand(method: str) -> None:
     """At 97 % of it: the joints carry the weight above them, and nothing pulls sideways."""
     length, height, count = 1.0, 0.25, 4

@@ -88,3 +88,16 @@ def test_friction_that_is_not_dissipated_is_seen(method, monkeypatch):
     results = ct.solve(model, ct.Static(increments=1), threads=1)
     assert abs(results.frames[-1].scalars["energy balance error"]) > 0.2
     assert [n for n in results.notes if "energy balance" in n]
+
+
+@pytest.mark.parametrize("keep", ["all", "last"])
+def test_a_peak_that_an_increment_may_pass_is_noted(keep):
+    """Whether all frames are kept or the last one only, as by ``corota run``."""
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, 2, 2))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.0))
+    model.contact("bottom", ct.RigidCurve.line((-1.0, 0.0), (2.0, 0.0)), name="floor")
+    model.amplitudes["push"] = ct.Amplitude(np.array([0.0, 0.5, 1.0]), np.array([0.0, 1.0, 0.1]))
+    step = ct.Static(increments=5)
+    step.fix("top", x=0.0, y=-0.01, amplitude="push")
+    notes = ct.solve(model, step, keep=keep, threads=1).notes
+    assert sum("resolves the peak" in note for note in notes) == 1

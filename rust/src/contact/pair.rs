@@ -258,6 +258,12 @@ impl Contact {
         self.method.hold(&self.sides, held);
     }
 
+    /// Take the node whose rotation is that of the slave's body, of which positions show no whole
+    /// turns.
+    pub fn carry(&mut self, node: u32) {
+        self.start.carrier = Some(node);
+    }
+
     /// Keeps the masters of the constraints as those to return to.
     pub fn commit(&mut self) {
         self.method.commit();

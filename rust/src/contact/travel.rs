@@ -56,7 +56,11 @@ pub struct Start {
     closed: Vec<bool>,
     /// Whether nothing has moved since.
     still: bool,
-    /// Rotation since of the master, if it is a rigid body with a node.
+    /// Node whose rotation is that of the slave's body.
+    pub(super) carrier: Option<u32>,
+    /// Rotation since of the slave's body, and of the master relative to it, if that is a rigid body
+    /// with a node.
+    carried: f64,
     turned: f64,
     next: Option<[Vec<Option<usize>>; 2]>,
     sides: Option<[Boundary; 2]>,
@@ -77,11 +81,14 @@ impl Start {
         x: &[[f64; 3]],
     ) -> bool {
         self.still = x == old;
-        self.turned = match &sides.master {
+        let rotation =
+            |node: Option<u32>| node.map_or(0.0, |n| x[n as usize][2] - old[n as usize][2]);
+        (self.carried, self.turned) = match &sides.master {
             Surface::Rigid(rigid) if rigid.turns => {
-                rigid.node.map_or(0.0, |n| x[n as usize][2] - old[n as usize][2])
+                let carried = rotation(self.carrier);
+                (carried, rotation(rigid.node) - carried)
             }
-            _ => 0.0,
+            _ => (0.0, 0.0),
         };
         if self.still || (self.sides.is_some() && self.x == old && self.closed == closed) {
             return false;
@@ -172,7 +179,7 @@ impl Start {
         let round = master.round(parts.1);
         if round.is_finite() && self.turned != 0.0 {
             // A body on the left of a way round it turns it by a whole turn, to the left or right.
-            let seen = now.heading - then.heading;
+            let seen = now.heading - then.heading - self.carried;
             let turn = seen - TAU * (seen / TAU).round() - self.turned;
             along += round * (master.sense(parts.1) * turn / TAU - along / round).round();
         }

@@ -404,6 +404,11 @@ impl Contact {
         Ok(())
     }
 
+    /// Take the node whose rotation is that of the slave's body.
+    fn carry(&mut self, node: u32) {
+        self.pair.carry(node);
+    }
+
     /// Remember the masters of the nodes (node_to_segment).
     fn commit(&mut self) {
         self.pair.commit();

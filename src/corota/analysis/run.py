@@ -25,7 +25,7 @@ from corota.analysis.procedures.localization import localized
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
-from corota.analysis.terms.contact.messages import missed_peaks
+from corota.analysis.terms.contact.messages import missed_peaks, pair_forces
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.display import brief
 from corota.errors import (
@@ -190,6 +190,8 @@ class Analysis:
         self.model, self.fields = model, fields
         self.observers = Observers(observers)
         self.results = Results(model, keep=keep)
+        #: Step, step time and forces of pairs of each increment of static steps.
+        self.pair_forces: list[tuple[int, float, list[float]]] = []
         self.steps, notes = keep_nlgeom(
             listed_steps(steps), any(s.material.local_strain for s in model.sections)
         )
@@ -265,9 +267,7 @@ class Analysis:
                 results.notes.append(remark)
                 if state.energies.made_by_contact:
                     warnings.warn(remark, stacklevel=3)
-            if self.model.contacts:
-                static = {i for i, s in enumerate(self.steps, 1) if s.procedure == "static"}
-                results.notes += missed_peaks(results, self.model.contacts, static)
+            results.notes += missed_peaks(self.pair_forces, self.model.contacts)
         except MemoryError:
             error = ResourceError(f"{SHORT}. All increments before are kept")
             error.results = results
@@ -509,6 +509,9 @@ class Analysis:
         if reaction is None:
             reaction = system.reaction(state.at)
             held = system.by_node(state.at.residual - reaction)
+        if self.model.contacts and kind == "static":
+            forces = pair_forces(self.model.contacts, scalars)
+            self.pair_forces.append((number, state.step_time, forces))
         frame = Frame(
             number,
             increment,

@@ -106,6 +106,14 @@ fn friction_slips_beyond_its_bound_and_goes_on_at_it() {
 }
 
 #[test]
+fn what_touches_sticks_whatever_the_rounding_of_its_gap() {
+    let law = law("hard", "coulomb");
+    for gap in [-1e-15, 0.0, 1e-15] {
+        assert_eq!(law.state(&constraint(gap, 0.0, 0.0), None), State::Closed);
+    }
+}
+
+#[test]
 fn constraints_without_the_other_side_ask_for_no_traction() {
     let laws = NORMAL.iter().map(|(normal, _)| law(normal, "coulomb"));
     for law in laws.chain([ContactLaw::Joined]) {

@@ -12,6 +12,7 @@ import numpy as np
 
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.newton import Outcome, Settings
+from corota.analysis.procedures.carried_bodies import carried_bodies
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
@@ -241,6 +242,11 @@ class StaticStepper(NewtonStepper):
         system, state = self.system, self.state
         settings, report, contact = self.settings, self.report, None
         self.passed = None
+        begin, supports = state.u, system.conditions.supports
+        prescribed = supports.at(target, begin)
+        turned = carried_bodies(system, begin, prescribed) if self.step.nlgeom else None
+        if turned is not None:
+            begin, prescribed, known = turned, supports.at(target, turned), None
         if first is not None:
             settings = replace(settings, search=True, first=first)
         if first is not None or before:
@@ -248,8 +254,8 @@ class StaticStepper(NewtonStepper):
         try:
             outcome, contact = solve_increment(
                 system,
-                state.u,
-                system.conditions.supports.at(target, state.u),
+                begin,
+                prescribed,
                 target,
                 settings,
                 report,

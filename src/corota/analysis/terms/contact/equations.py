@@ -56,6 +56,7 @@ class ContactEquations(ContactProblem):
 
     def start(self, u: Floats) -> Floats:
         """Displacements with the committed multipliers."""
+        self.origin = u
         return np.concatenate([u, self.contact_term.committed])
 
     def residual_norms(self, at: Evaluation, z: Floats) -> ResidualNorms:
@@ -185,8 +186,8 @@ class ContactEquations(ContactProblem):
         )
 
     def near(self, u: Floats) -> bool:
-        """Whether an equilibrium is near the committed one, as far as its first correction says."""
-        moved = float(np.abs((u - self.contact_term.u)[~self.system.is_rotation]).max())
+        """Whether an equilibrium is near the start, as far as its first correction says."""
+        moved = float(np.abs((u - self.origin)[~self.system.is_rotation]).max())
         forces = bool(np.any(self.system.load_rate(u)[0]))
         limit = (JUMP_OF_FORCE if forces else JUMP) * self.first_move
         return limit == 0.0 or moved <= limit

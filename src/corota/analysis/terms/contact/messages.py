@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.contact.problem import ContactProblem
-    from corota.results.results import Results
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -233,33 +232,47 @@ def _depth(x: Floats, pair: Pair, corner: int) -> tuple[float, tuple[int, int]]:
 STEEP = 0.05
 
 
-def missed_peaks(results: Results, pairs: list[ContactPair], static: set[int]) -> list[str]:
+def pair_forces(pairs: list[ContactPair], scalars: dict[str, float]) -> list[float]:
+    """Size of the force of each pair [force] from the histories of an increment."""
+    along = ([scalars.get(f"{pair.name}: force {c}", 0.0) for c in "xy"] for pair in pairs)
+    return [float(np.hypot(*force)) for force in along]
+
+
+def missed_peaks(
+    increments: list[tuple[int, float, list[float]]], pairs: list[ContactPair]
+) -> list[str]:
     """Notes on largest forces of pairs beside which the force changes much in one increment.
 
     Parameters
     ----------
-    results : Results
+    increments : list of tuple of int, float and list of float
+        Step, step time and :func:`pair_forces` of each increment of the static steps; in motion
+        the scheme bounds the error of an increment.
     pairs : list of ContactPair
-    static : set of int
-        Numbers of the static steps; in motion the scheme bounds the error of an increment.
     """
-    notes = []
-    frames = [f for f in results.frames if f.step in static]
-    for pair in pairs:
-        along = [[f.scalars.get(f"{pair.name}: force {c}", 0.0) for c in "xy"] for f in frames]
-        force = np.hypot(*np.reshape(along, (-1, 2)).T)
+    notes: list[str] = []
+    for k, pair in enumerate(pairs):
+        force = np.array([forces[k] for _, _, forces in increments])
         i = int(np.argmax(force)) if len(force) else 0
-        if not 0 < i < len(frames) - 1 or frames[i - 1].step != frames[i + 1].step:
+        if not 0 < i < len(force) - 1 or increments[i - 1][0] != increments[i + 1][0]:
             continue
         before, most, after = force[i - 1 : i + 2]
         if most - min(before, after) > STEEP * most:
             notes.append(
                 f"contact pair {pair.name!r}: the largest force, {most:.4g}, at step time "
-                f"{frames[i].step_time:.4g} of step {frames[i].step}, stands between {before:.4g} "
+                f"{increments[i][1]:.4g} of step {increments[i][0]}, stands between {before:.4g} "
                 f"and {after:.4g} of the increments beside it, between which it may be larger: a "
                 "smaller largest_increment resolves the peak"
             )
     return notes
 
 
-__all__ = ["corner_note", "explanation", "fillet_note", "gives_way", "missed_peaks", "sunk_corner"]
+__all__ = [
+    "corner_note",
+    "explanation",
+    "fillet_note",
+    "gives_way",
+    "missed_peaks",
+    "pair_forces",
+    "sunk_corner",
+]

@@ -88,6 +88,8 @@ class ContactProblem:
         Kink of the contact surfaces at which the bodies may rest.
     kinks, beyond : int
         Kinks tried, and corrections in which one carried more than its jump.
+    origin : ndarray
+        Displacements that the attempt begins with.
     places : list of ndarray
         Displacements of the last three evaluations.
     stage : str
@@ -104,6 +106,7 @@ class ContactProblem:
         self.evaluate = system.evaluate
         self.contact_term: ContactTerm = system.contact_term
         self.n = system.n_dofs
+        self.origin: Floats = system.contact_term.u
         self.forget()
 
     def forget(self) -> None:

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 #: Fraction of the reach that a node may move without this check.
 UNSEEN = 0.5
+#: Rotation of a side in an increment [rad] up to which its ways count as straight.
+TURNS = 0.2
 #: Nodes times pieces that are compared at once.
 AT_ONCE = 1_000_000
 #: Angle of the chords of arcs [rad].
@@ -58,26 +60,42 @@ def passed(
     """
     if pair.tied:
         return np.zeros(0, np.int64)
-    move = new[:, :2] - old[:, :2]
     first, last, ends = other_side(pair, old, new)
     if not len(first):
         return np.zeros(0, np.int64)
-    mean, spread = np.zeros(2), 0.0
-    if first is not last:
-        drift = (last - first).reshape(-1, 2)
-        mean = drift.mean(axis=0)
-        spread = np.hypot(*(drift - mean).T).max()
-    nodes = pair.nodes
-    moved = np.hypot(*(move[nodes] - mean).T) + spread
+    nodes, state = pair.nodes, None
+    through = np.arange(len(nodes))
     unseen = terms.area <= COVERED * pair.full
-    far = (moved > UNSEEN * pair.reach) | (unseen & (moved > pair.depth))
-    if not far.any():
-        return np.zeros(0, np.int64)
-    state = states()
-    closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
-    chosen = np.flatnonzero(far & ~closed)
-    share = times_of_crossing(first, last, ends, old, new, nodes[chosen], starts()[chosen])
-    return chosen[share < math.inf]
+    # A body that turns goes along arcs: who passes goes through seen from either side.
+    sides = (old[nodes, :2], new[nodes, :2]), (first.reshape(-1, 2), last.reshape(-1, 2))
+    for turn in sorted({0.0 if abs(a) <= TURNS else a for a in (_turn(*side) for side in sides)}):
+        c, s = math.cos(turn), math.sin(turn)
+        back = np.array([[c, -s], [s, c]])
+        seen, end = np.column_stack([new[:, :2] @ back, new[:, 2]]), last @ back
+        mean, spread = np.zeros(2), 0.0
+        if first is not last:
+            drift = (end - first).reshape(-1, 2)
+            mean = drift.mean(axis=0)
+            spread = np.hypot(*(drift - mean).T).max()
+        moved = np.hypot(*(seen[nodes, :2] - old[nodes, :2] - mean).T) + spread
+        far = (moved > UNSEEN * pair.reach) | (unseen & (moved > pair.depth))
+        through = through[far[through]]
+        if not len(through):
+            break
+        state = states() if state is None else state
+        closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
+        through = through[~closed[through]]
+        start = starts()[through]
+        share = times_of_crossing(first, end, ends, old, seen, nodes[through], start)
+        through = through[share < math.inf]
+    return through
+
+
+def _turn(old: Floats, new: Floats) -> float:
+    """Angle by which points turn about their center in the mean [rad]."""
+    before, after = old - old.mean(axis=0), new - new.mean(axis=0)
+    across = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    return math.atan2(float(across.sum()), float((before * after).sum()))
 
 
 def outside(term: Any, k: int, moves: bool) -> Floats:

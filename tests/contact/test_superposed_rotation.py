@@ -1,0 +1,29 @@
+"""A rotation superposed on an increment turns the forces and changes nothing else."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks import objectivity
+from corota.model.contact import METHODS
+
+CASES = [
+    (objectivity.drag, "rigid"),
+    (objectivity.drag, "table master"),
+    (objectivity.punch, "disc"),
+]
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("make", "role"), CASES)
+@pytest.mark.parametrize("degrees", [137.0, 400.0])
+def test_forces_turn_with_a_superposed_rotation(make, role, method, degrees):
+    """In each of two increments, friction included; slips of whole turns belong to no body."""
+    still = objectivity.measured(make(method, role), 0.0)
+    turned = objectivity.measured(make(method, role), degrees)
+    for kind, values in turned.items():
+        scale = max(float(np.abs(still[k]).max()) for k in ("gap", "slip", kind))
+        scale = scale if kind in ("gap", "slip") else float(np.abs(still[kind]).max())
+        np.testing.assert_allclose(values, still[kind], atol=objectivity.SAME * scale, err_msg=kind)
