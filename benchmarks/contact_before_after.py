@@ -129,6 +129,7 @@ def main() -> int:
     parser.add_argument("new", type=Path, help="wheel or source tree")
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=400)
+    parser.add_argument("--every", type=int, default=1, help="run every so many problems only")
     parser.add_argument("--limit", type=int, default=100, help="CPU seconds of one")
     parser.add_argument("--size", type=float, default=1.0, help="factor on numbers of elements")
     parser.add_argument("--repeats", type=int, default=2, help="runs of each that both finish")
@@ -152,7 +153,7 @@ def main() -> int:
             # What is loaded with the first run is no part of its time.
             builds[side].start("torture", task(0))
             builds[side].finish()
-        for number in range(chosen.first, chosen.first + chosen.count):
+        for number in range(chosen.first, chosen.first + chosen.count, chosen.every):
             if number in rows:
                 continue
             row: Row = {"number": number}

@@ -44,6 +44,7 @@ def roller(
     plane: Any = "strain",
     load: float = LOAD,
     nlgeom: bool = False,
+    method: str = "mortar",
     **keys: Any,
 ) -> Results:
     """A quarter of the roller on half of the block; the load is that of the whole."""
@@ -73,7 +74,7 @@ def roller(
         model.fix(f"{name}.left", x=0.0, y=None, rotation=True)
     model.fix("block.bottom", x=None, y=0.0)
     model.traction("disc.top", y=-0.5 * load / (0.6 * R))
-    model.contact("disc.bottom", "block.top", name="roller")
+    model.contact("disc.bottom", "block.top", name="roller", method=method)
     return run(model, Static(nlgeom=nlgeom), **keys)
 
 
