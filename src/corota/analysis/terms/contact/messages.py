@@ -235,7 +235,7 @@ STEEP = 0.05
 def pair_forces(pairs: list[ContactPair], scalars: dict[str, float]) -> list[float]:
     """Size of the force of each pair [force] from the histories of an increment."""
     along = ([scalars.get(f"{pair.name}: force {c}", 0.0) for c in "xy"] for pair in pairs)
-    return [float(np.hypot(*force)) for force in along]
+    return [float(np.hypot(x, y)) for x, y in along]
 
 
 def missed_peaks(
