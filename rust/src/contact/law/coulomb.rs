@@ -28,8 +28,9 @@ impl Coulomb {
 impl TangentialLaw for Coulomb {
     fn slips(&self, at: &Constraint, shear: f64, pressure: f64, last: Option<State>) -> bool {
         let slipped = last == Some(State::Slipping);
-        // What touches, with a gap that is rounding, has no pressure yet and sticks.
-        let bound = self.bound(maximum(pressure, 0.0));
+        // What touches, with a gap that is rounding, has no pressure yet and sticks; what adheres
+        // is pulled.
+        let bound = self.bound(if at.adheres { pressure } else { maximum(pressure, 0.0) });
         let bound = if slipped { GOES_ON * bound } else { bound };
         // What turns round sticks first.
         shear.abs() > bound && (!slipped || shear * at.q >= 0.0)
