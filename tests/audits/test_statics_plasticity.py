@@ -670,14 +670,11 @@ def test_a_turn_between_plastic_cycles_changes_nothing(element: str, strain: str
     assert spun.scalars["ALLPD"] == pytest.approx(plain.scalars["ALLPD"], rel=1e-6)
 
 
-def test_fixed_increments_are_kept_or_the_run_stops() -> None:
-    """A plastic strip whose grips turn by 80 degrees at once: DIRECT stops, and does not go on
-    along the path with increments of its own, in which the chord of the way makes it flow.
-    """
-    L = 4.0
-    mesh = ct.mesh.rectangle(L, 1.0, 6, 2, "quad8")
+def gripped_strip() -> tuple[ct.Model, ct.Static, int, int]:
+    """A plastic strip between rigid grips, the step that bends it, and the nodes of the grips."""
+    mesh = ct.mesh.rectangle(4.0, 1.0, 6, 2, "quad8")
     a = ct.mesh.add_node(mesh, 0.0, 0.5, "a")
-    b = ct.mesh.add_node(mesh, L, 0.5, "b")
+    b = ct.mesh.add_node(mesh, 4.0, 0.5, "b")
     model = ct.Model(mesh)
     steel = ct.Mises(E=1000.0, nu=0.3, yield_stress=4.0, isotropic=20.0, kinematic=60.0)
     model.section("all", element="Q8R", material=steel)
@@ -686,12 +683,34 @@ def test_fixed_increments_are_kept_or_the_run_stops() -> None:
     bent = ct.Static(increments=8, fixed_increments=True)
     bent.fix([a], rotation=0.0)
     bent.fix([b], x=-0.1, y=0.5, rotation=0.25)
+    return model, bent, a, b
+
+
+def test_grips_that_turn_a_plastic_strip_in_one_increment() -> None:
+    """By 80 degrees: the same forces in the turned frame, and no more flow."""
+    model, bent, a, b = gripped_strip()
     angle = math.radians(80.0)
-    place = rotation(angle) @ np.array([L - 0.1, 0.5]) - np.array([L, 0.0])
+    place = rotation(angle) @ np.array([3.9, 0.5]) - np.array([4.0, 0.0])
     turned = ct.Static(increments=1, fixed_increments=True)
     turned.fix([a], rotation=angle)
     turned.fix([b], x=float(place[0]), y=float(place[1]), rotation=0.25 + angle)
+    results = ct.solve(model, [bent, turned], threads=1)
+    before, after = results.frames[-2:]
+    forces = after.RF[[a, b], :2] @ rotation(angle)
+    np.testing.assert_allclose(forces, before.RF[[a, b], :2], rtol=1e-6)
+    np.testing.assert_allclose(after.RF[[a, b], 2], before.RF[[a, b], 2], rtol=1e-6)
+    assert after.scalars["ALLPD"] == pytest.approx(before.scalars["ALLPD"], rel=1e-6)
+
+
+def test_fixed_increments_are_kept_or_the_run_stops() -> None:
+    """Grips that bend a plastic strip by 80 degrees each at once: DIRECT stops, and does not go on
+    along the path with increments of its own.
+    """
+    model, bent, a, b = gripped_strip()
+    folded = ct.Static(increments=1, fixed_increments=True)
+    folded.fix([a], rotation=-math.radians(80.0))
+    folded.fix([b], x=-0.1, y=0.5, rotation=0.25 + math.radians(80.0))
     with pytest.raises(ct.ConvergenceError, match="fixed") as stopped:
-        ct.solve(model, [bent, turned], threads=1)
+        ct.solve(model, [bent, folded], threads=1)
     frames = stopped.value.results.frames
     assert [(f.step, f.increment) for f in frames if f.increment] == [(1, k) for k in range(1, 9)]

@@ -58,8 +58,8 @@ def test_rows_and_columns_are_derivatives(method, law):
         touch = self.evaluate(z, 1.0).contact_state
         out = []
         for (pair, terms, (p, q)), s in zip(self.pairs(touch), states, strict=True):
-            _, rp, _, rq, ratio = pair.rows(terms, s, p, q, self.slip_directions[pair.first])
-            out += [-rp, np.where(s == SLIPPING, q - ratio * p, -rq)]
+            _, rp, _, rq, ratio, level = pair.rows(terms, s, p, q, self.slip_directions[pair.first])
+            out += [-rp, np.where(s == SLIPPING, q - ratio * p - level, -rq)]
         return touch.force, np.concatenate(out)
 
     def slope(dz):

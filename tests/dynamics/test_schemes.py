@@ -167,11 +167,13 @@ def test_central_differences_name_the_stable_increment():
     from corota.analysis.equations import System
     from corota.analysis.linear.solvers import Multifrontal
     from corota.analysis.procedures.explicit import diagonal, stable_increment
+    from corota.analysis.procedures.explicit_constraints import mass_of
 
     system = System(model, Multifrontal())
     system.begin(ct.Dynamic(), 0.0, np.zeros(system.n_dofs), None)
     mass = diagonal(system)
-    stable = stable_increment(system, np.zeros(system.n_dofs), mass)
+    rest = np.zeros(system.n_dofs)
+    stable = stable_increment(system, rest, mass_of(system, mass, rest))
     at = system.evaluate(np.zeros(system.n_dofs), 0.0)
     dense = np.zeros((system.n_dofs, system.n_dofs))
     columns = np.repeat(np.arange(system.n_dofs), np.diff(system.pattern.indptr.astype(int)))

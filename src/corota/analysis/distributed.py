@@ -266,9 +266,11 @@ class DistributedLoads:
         if load.item.kind == "penetrating pressure":
             load.force = self._penetrating(load)
             return load
+        presses = load.item.kind.endswith("pressure")
         hydrostatic = load.item.kind == "hydrostatic pressure"
-        core, drilling = self._core(load.faces, load.item.value[1:] if hydrostatic else ())
-        if load.item.kind.endswith("pressure"):
+        heights = load.item.value[1:] if hydrostatic else ()
+        core, drilling = self._core(load.faces, heights, presses)
+        if presses:
             load.force = Pressure(self.system, core)
         else:
             x, y = load.traction
@@ -382,16 +384,20 @@ class DistributedLoads:
         table = np.asarray(nodes, np.int64).reshape(-1, 3)
         return table, np.array(thickness).reshape(-1, 3), np.asarray(alpha, np.float64)
 
-    def _core(self, faces: Ints, heights: tuple[float, ...] = ()) -> tuple[_core.EdgeLoads, bool]:
+    def _core(
+        self, faces: Ints, heights: tuple[float, ...] = (), presses: bool = False
+    ) -> tuple[_core.EdgeLoads, bool]:
         """The core's edges, and whether some of them bulge with rotations.
 
         A hydrostatic pressure is one of unit size on edges whose thickness varies with the depth.
         """
         nodes, thickness, alpha = self._edges(faces)
         points = self.system.model.mesh.points
+        ring = self.system.axisymmetric
+        if ring and presses:  # pressures act on the current way around, which the core knows
+            thickness = np.ones_like(thickness)
         if heights:
             thickness = hydrostatic_thickness(points, nodes, thickness, *heights)
-        ring = self.system.axisymmetric
         edges = _core.EdgeLoads(points, nodes.astype(np.uint32), thickness, alpha, ring)
         return edges, bool((alpha > 0.0).any())
 

@@ -3,13 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.analysis.constraints.none import IDENTITY
-from corota.analysis.terms.contact.gaps import NO_CONTACT, ContactState
+from corota.analysis.terms.contact.gaps import ContactState, no_contact
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -56,7 +56,7 @@ class Evaluation:
     added: Floats | None = None
     inertia: Floats | None = None
     damping: Floats | None = None
-    contact_state: ContactState = NO_CONTACT
+    contact_state: ContactState = field(default_factory=no_contact)
     inertial_stiffness: float = 0.0
     momentum: float = 0.0
 

@@ -132,6 +132,8 @@ class PenetratingPressure:
             if edges is not None and wet.any():
                 nodes = edges.nodes[wet].astype(np.uint32)
                 thickness, bulge = edges.thickness[wet], edges.bulge[wet]
+                if ring:  # the core knows the current way around
+                    thickness = np.ones_like(thickness)
                 found.append(_core.EdgeLoads(points, nodes, thickness, bulge, ring))
         return found
 

@@ -337,7 +337,8 @@ class Reader:
         own = fresh if type(fresh) is kind else kind.__new__(kind)
         self._keep(tree["n"], own)
         for name in () if own is fresh else _recomputed(kind):
-            object.__setattr__(own, name, None)
+            if not hasattr(kind, name):  # a property computes it again
+                object.__setattr__(own, name, None)
         for name, part in tree["parts"].items():
             old = _parts(own).get(name)
             value = self._value(part, old)

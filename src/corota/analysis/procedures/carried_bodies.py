@@ -3,7 +3,7 @@
 A correction of Newton's method is linear in the rotation: of a body that its supports carry round
 by a quarter turn it would make another shape. Bodies therefore start turned as their supports turn
 them, all of them where the motion of the first one carries them; how they move relative to it is
-left to the corrections. So a superposed rotation changes no iteration.
+left to the corrections. It is a second attempt, where the first one from the committed state fails.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -20,6 +20,8 @@ from corota.lazy import lazy
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from numpy.typing import NDArray
+
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.increment_loop import Report
@@ -28,6 +30,8 @@ if TYPE_CHECKING:
     from corota.analysis.state import State
     from corota.analysis.terms.contact.newton import ContactIncrement
     from corota.model.steps import Static
+
+    Floats = NDArray[np.float64]
 
 # What a step without difficulties does not need.
 at_limit = lazy("corota.analysis.procedures.stopping:at_limit")
@@ -48,6 +52,8 @@ ELASTIC = 0.01
 CREEP_SAFETY, MOST_GROWTH = 0.9, 4.0
 #: Note of the iterations of such an attempt.
 UNLOADING = "line search from the elastic tangent"
+#: And of those that begin with bodies turned by their supports.
+TURNED = "bodies turned with their supports"
 
 
 def static_step(
@@ -144,6 +150,15 @@ class StaticStepper(NewtonStepper):
         if not turns or outcome.reason:
             outcome, contact = self.equilibrium(target, known, before=before)
             outcome.iterations += before
+        if outcome.reason and step.nlgeom:
+            u = state.u
+            turned = carried_bodies(system, u, system.conditions.supports.at(target, u))
+            if turned is not None:
+                again, its_contact = self.equilibrium(
+                    target, None, None, outcome.iterations, turned
+                )
+                again.iterations += outcome.iterations
+                outcome, contact = (outcome, contact) if again.reason else (again, its_contact)
         if outcome.reason and may_unload and (step.fixed_increments or not turns):
             # Where an increment can be cut, only elastic unloading is worth a second attempt: a
             # long increment of a softening body may end on another equilibrium path.
@@ -211,6 +226,7 @@ class StaticStepper(NewtonStepper):
         known: Evaluation | None,
         first: float | None = None,
         before: int = 0,
+        begin: Floats | None = None,
     ) -> tuple[Outcome, ContactIncrement | None]:
         """Newton's method from the committed state.
 
@@ -225,6 +241,8 @@ class StaticStepper(NewtonStepper):
             without one there is no line search.
         before : int, optional
             Iterations of the attempts before, for the log.
+        begin : ndarray, shape (n_dofs,), optional
+            First iterate, in place of that state.
 
         Returns
         -------
@@ -242,20 +260,17 @@ class StaticStepper(NewtonStepper):
         system, state = self.system, self.state
         settings, report, contact = self.settings, self.report, None
         self.passed = None
-        begin, supports = state.u, system.conditions.supports
-        prescribed = supports.at(target, begin)
-        turned = carried_bodies(system, begin, prescribed) if self.step.nlgeom else None
-        if turned is not None:
-            begin, prescribed, known = turned, supports.at(target, turned), None
+        begin = state.u if begin is None else begin
         if first is not None:
             settings = replace(settings, search=True, first=first)
         if first is not None or before:
-            report = _continued(report, before, UNLOADING if first is not None else "")
+            how = TURNED if begin is not state.u else UNLOADING if first is not None else ""
+            report = _continued(report, before, how)
         try:
             outcome, contact = solve_increment(
                 system,
                 begin,
-                prescribed,
+                system.conditions.supports.at(target, begin),
                 target,
                 settings,
                 report,

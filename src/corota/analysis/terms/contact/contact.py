@@ -17,10 +17,10 @@ import numpy as np
 from corota.analysis.terms.contact.gaps import (
     CLOSED,
     COVERED,
-    NO_CONTACT,
     OPEN,
     ContactState,
     Terms,
+    no_contact,
 )
 from corota.analysis.terms.term import NO_NODES, NONE, Role, Term, TermOutput
 from corota.errors import ModelError, UnsupportedError
@@ -127,7 +127,7 @@ class ContactTerm(Term):
         self.kink: Kink | None = None
         self.trial_kink: Kink | None = None
         #: Displacements and contact of the last evaluation.
-        self.last = self.u, NO_CONTACT
+        self.last = self.u, no_contact()
         #: Stiffness at each dof and displacements of springs that relaxation attaches.
         self.springs: tuple[Floats, Floats] | None = None
         self.reported_constraints: set[int] = set()  # dropped constraints that were reported

@@ -153,7 +153,9 @@ class Kink:
         self.share = share + part * change
 
 
-#: That of a state without pairs, or evaluated without multipliers.
-NO_CONTACT = ContactState([], np.zeros(0), np.zeros(0), np.zeros(0))
+def no_contact() -> ContactState:
+    """State without pairs, or evaluated without multipliers; new, since checkpoints fill it."""
+    return ContactState([], np.zeros(0), np.zeros(0), np.zeros(0))
 
-__all__ = ["CLOSED", "COVERED", "NO_CONTACT", "OPEN", "SLIPPING", "ContactState", "Kink", "Terms"]
+
+__all__ = ["CLOSED", "COVERED", "OPEN", "SLIPPING", "ContactState", "Kink", "Terms", "no_contact"]

@@ -66,9 +66,11 @@ def passed(
     nodes, state = pair.nodes, None
     through = np.arange(len(nodes))
     unseen = terms.area <= COVERED * pair.full
-    # A body that turns goes along arcs: who passes goes through seen from either side.
+    # Bodies that turn together go along arcs: who passes goes through seen from either of them.
     sides = (old[nodes, :2], new[nodes, :2]), (first.reshape(-1, 2), last.reshape(-1, 2))
-    for turn in sorted({0.0 if abs(a) <= TURNS else a for a in (_turn(*side) for side in sides)}):
+    turns = [_turn(*side) for side in sides]
+    common = abs(_turn_between(*turns)) <= TURNS < abs(turns[0])
+    for turn in sorted(set(turns)) if common else [0.0]:
         c, s = math.cos(turn), math.sin(turn)
         back = np.array([[c, -s], [s, c]])
         seen, end = np.column_stack([new[:, :2] @ back, new[:, 2]]), last @ back
@@ -96,6 +98,11 @@ def _turn(old: Floats, new: Floats) -> float:
     before, after = old - old.mean(axis=0), new - new.mean(axis=0)
     across = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     return math.atan2(float(across.sum()), float((before * after).sum()))
+
+
+def _turn_between(one: float, other: float) -> float:
+    """Difference of two angles, up to half a turn [rad]."""
+    return math.remainder(one - other, math.tau)
 
 
 def outside(term: Any, k: int, moves: bool) -> Floats:
