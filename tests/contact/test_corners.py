@@ -266,7 +266,7 @@ def test_blunt_vertices_of_a_slave_count_against_a_master_with_corners(
     assert found == [flat, with_corner]
 
 
-@pytest.mark.parametrize("number", [49, 193])
+@pytest.mark.parametrize("number", [pytest.param(49, marks=pytest.mark.slow), 193])
 def test_a_hook_past_a_catch_finishes(number: int) -> None:
     """193 stopped with the corner of the catch inside the hook; 49 with vertices of the hook."""
     row = run(number, limit=60, size=0.5)

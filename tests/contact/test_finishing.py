@@ -126,7 +126,7 @@ def test_a_clip_finishes_where_no_relaxed_position_balances():
     assert any("no springs" in note for note in notes)  # the state that is accepted has none
 
 
-@pytest.mark.parametrize("number", [1183, 1767])
+@pytest.mark.parametrize("number", [1183, pytest.param(1767, marks=pytest.mark.slow)])
 def test_a_damped_motion_starts_newtons_method_where_relaxation_finds_nothing(number):
     """A clip whose gaps jump, without friction; a block on a wavy floor, with friction 1."""
     notes = []

@@ -41,7 +41,17 @@ CASES = [
 KEYS = ("element", "law", "plane", "strain", "load", "constraint", "path")
 
 
-@pytest.mark.parametrize("choice", CASES, ids=["-".join(c[:2]) for c in CASES])
+#: Cases that take more than ten seconds.
+LONG = {("BEAM", "mises")}
+
+
+@pytest.mark.parametrize(
+    "choice",
+    [
+        pytest.param(c, marks=[pytest.mark.slow] if c[:2] in LONG else [], id="-".join(c[:2]))
+        for c in CASES
+    ],
+)
 def test_gradient_is_the_difference(choice: tuple[str, ...]) -> None:
     """Two of the parameters, which change with the case."""
     seed = CASES.index(choice)

@@ -181,7 +181,13 @@ DECKS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", DECKS)
+#: Decks that are read for seconds.
+LONG = {"a hundred thousand steps"}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in LONG else []) for n in DECKS]
+)
 def test_a_deck_is_refused_or_gives_sound_results(capfd, here, name):
     deck = DECKS[name]
     (here / "job.inp").write_bytes(deck if isinstance(deck, bytes) else deck.encode())
