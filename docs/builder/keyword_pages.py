@@ -50,7 +50,7 @@ def rows(docs: Path) -> dict[str, list[tuple[str, str, str]]]:
     found: dict[str, list[tuple[str, str, str]]] = {}
     for names, parameters, remarks in ROW.findall(text):
         for name in re.findall(r"\*([A-Z][A-Z -]*[A-Z])", names):
-            up = [re.sub(r"\]\(([a-z-]+\.md)", r"](../../\1", t) for t in (parameters, remarks)]
+            up = [re.sub(r"\]\(([a-z_/-]+\.md)", r"](../../\1", t) for t in (parameters, remarks)]
             found.setdefault(name.replace(" ", ""), []).append((name, *up))
     return found
 
