@@ -59,6 +59,9 @@ def test_page_of_a_keyword_is_whole(key: str) -> None:
     reported = re.sub(r"[^A-Z0-9-]", "", text.split("## What differs")[0])
     for parameter in KEYWORDS[key].parameters.split():
         assert parameter in reported, f"*{name} does not tell of its parameter {parameter}"
+    for target in re.findall(r"\]\((?!http)([^)#]+\.md)", text):
+        if "generated" not in target:
+            assert (DOCS / "generated/keywords" / target).resolve().exists(), target
 
 
 def test_notes_are_of_known_keywords() -> None:

@@ -17,15 +17,15 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.analysis.procedures.path.stability import CRITICAL_POINT_TOLERANCE
 from corota.cli import main
 from scale import cases
 
 #: Newton's method stops at a relative residual of 1e-9; the last correction is far below that.
 AGREE = 1e-9
-#: Critical points are located to a share of their increment. Rounding errors of one unit in the
-#: last place move those of the default solver, too, by up to 2e-8; the path between them agrees.
-SENSITIVE = {"snap_through": CRITICAL_POINT_TOLERANCE, "unstable": 1e-8}
+#: Critical points are located to a share of their increment. Errors of one unit in the last place
+#: of the coordinates move those of the default solver, too, by up to 4.6e-7 of the displacement
+#: (5 of 12 tries: the second limit point of the arch); the path between them agrees.
+SENSITIVE = {"snap_through": 1e-6, "unstable": 1e-8}
 #: Time that a started program may take on a busy machine [s].
 PATIENCE = 240.0
 
