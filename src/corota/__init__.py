@@ -324,9 +324,11 @@ def __getattr__(name: str) -> Any:
     try:
         module = import_module(f"corota.{home or name}")
         value = getattr(module, name) if home else module
-    except MemoryError:
-        from corota.errors import SHORT, ResourceError
+    except (MemoryError, SystemError) as error:
+        from corota.errors import SHORT, ResourceError, is_shortage
 
+        if not is_shortage(error):
+            raise
         raise ResourceError(SHORT) from None
     globals()[name] = value
     return value

@@ -201,8 +201,18 @@ def memory_errors() -> Iterator[None]:
     """
     try:
         yield
-    except MemoryError:
+    except (MemoryError, SystemError) as error:
+        if not is_shortage(error):
+            raise
         raise ResourceError(SHORT) from None
+
+
+def is_shortage(error: BaseException) -> bool:
+    """Whether an error says that memory is short.
+
+    Where Python cannot even make a ``MemoryError``, its importer raises this ``SystemError``.
+    """
+    return isinstance(error, MemoryError) or "without exception set" in str(error)
 
 
 class FileError(CorotaError):

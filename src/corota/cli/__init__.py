@@ -89,7 +89,7 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
     """Run a command; every error becomes a message and an exit code."""
     from importlib import import_module
 
-    from corota.errors import SHORT, CorotaError
+    from corota.errors import SHORT, CorotaError, is_shortage
 
     try:
         import corota._core as _core
@@ -128,6 +128,9 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
         _trace()
         if "can't start new thread" in str(error):
             terminal.error("the system cannot create more threads, or has no memory for them")
+            return 5
+        if is_shortage(error):
+            terminal.error(SHORT)
             return 5
         frame = error.__traceback__
         while frame is not None and frame.tb_next is not None:
