@@ -53,7 +53,7 @@ try:
     from corota.io.job import JobFiles
     from numpy.linalg import norm
     import h5py, scipy.sparse
-except (ImportError, MemoryError, OSError) as error:
+except (ImportError, MemoryError, OSError, SystemError) as error:
     sys.stderr.write(f"error: Python does not start: {error}")
     sys.exit(5)
 try:

@@ -116,6 +116,7 @@ def page(key: str, docs: Path) -> str:
             "```{code-block} text",
         ]
         lines += [f":emphasize-lines: {','.join(map(str, marked))}", "", text.rstrip(), "```", ""]
+        lines += [f"![Model of {file}](../static/deck-{Path(file).stem}.png)", ""]
     return "\n".join(lines)
 
 

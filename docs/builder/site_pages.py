@@ -7,6 +7,7 @@ import inspect
 import re
 from pathlib import Path
 
+import deck_pictures
 import element_pages
 import gallery
 import keyword_pages
@@ -105,6 +106,7 @@ def write(docs: Path) -> None:
         (folder / part).mkdir(parents=True, exist_ok=True)
     _put(folder / "static" / "figures.css", STYLE + LOOK)
     _put(folder / "static" / "logo.svg", LOGO)
+    deck_pictures.write(docs / "decks", folder / "static")
     for part, pages in (("keywords", keyword_pages.pages), ("elements", element_pages.pages)):
         for name, text in pages(docs).items():
             _put(folder / part / name, text)

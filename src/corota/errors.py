@@ -210,9 +210,13 @@ def memory_errors() -> Iterator[None]:
 def is_shortage(error: BaseException) -> bool:
     """Whether an error says that memory is short.
 
-    Where Python cannot even make a ``MemoryError``, its importer raises this ``SystemError``.
+    Where Python cannot even make a ``MemoryError``, it raises a ``SystemError`` which says that a
+    call failed without an exception.
     """
-    return isinstance(error, MemoryError) or "without exception set" in str(error)
+    said = str(error)
+    return isinstance(error, MemoryError) or (
+        "without exception set" in said or "without setting an exception" in said
+    )
 
 
 class FileError(CorotaError):

@@ -10,7 +10,13 @@ from corota.errors import memory_errors
 
 
 @pytest.mark.parametrize(
-    "error", [MemoryError(), SystemError("error return without exception set")], ids=repr
+    "error",
+    [
+        MemoryError(),
+        SystemError("error return without exception set"),
+        SystemError("<built-in function exec> returned NULL without setting an exception"),
+    ],
+    ids=repr,
 )
 def test_a_shortage_is_a_resource_error(error: BaseException) -> None:
     with pytest.raises(ct.ResourceError), memory_errors():
