@@ -223,7 +223,7 @@ FAULTS = [
         "no outer element edge",
     ),
     ("*CONTACT\n", "*CONTACT", "no *CONTACT INCLUSIONS"),
-    ("*CONTACT EXCLUSIONS\n", "*CONTACT", "not supported"),
+    ("*CONTACT EXCLUSIONS\n", "*CONTACT", "belongs under *CONTACT"),
     (INTERACTION + "*FRICTION, ANISOTROPIC\n", "ANISOTROPIC", "ANISOTROPIC"),
 ]
 

@@ -22,7 +22,7 @@ CASES = [
     ("*BOUNDARY", "*BOUNDARY, SUBMODEL", 16, 12, "SUBMODEL is not supported"),
     ("*BOUNDARY", "*BOUNDARY, FIXED", 16, 12, "FIXED belongs in a step"),
     ("*BOUNDARY", "*BOUNDARY, OP=OLD", 16, 15, "expected NEW, MOD"),
-    ("*CLOAD", "*CONTACT PAIR, INTERACTION=i", 22, 1, "inside a step"),
+    ("*CLOAD", "*SURFACE INTERACTION, NAME=i", 22, 1, "inside a step"),
     ("*CLOAD", "*CLOAD, AMPLITUDE=up", 22, 19, "no amplitude named 'up'"),
     ("TYPE=CPS4, ELSET=eall", "ELSET=eall", 8, 1, "TYPE= is missing"),
     ("TYPE=CPS4", "TYPE=CPS5", 8, 16, "unknown element type 'CPS5'"),

@@ -124,7 +124,6 @@ def test_inclusions_name_pairs(tmp_path: Path) -> None:
     model = read(tmp_path, text)
     assert [(p.slave, p.master) for p in model.contacts] == [("B", "A")]
     assert any("hard, no friction" in note for note in model.notes)
-    assert "name both" in fault(tmp_path, text.replace("B, A", ", A"))
     assert "no *CONTACT INCLUSIONS" in fault(
         tmp_path, text.replace("*CONTACT INCLUSIONS\nB, A\n", "")
     )

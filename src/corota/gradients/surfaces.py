@@ -80,6 +80,8 @@ def refuse_surfaces(model: Model) -> None:
             why = "a law of pressure against overclosure"
         elif pair.shear_limit is not None or not pair.separates or pair.steps is not None:
             why = "a largest shear traction, surfaces that do not separate, or steps without them"
+        elif pair.friction_steps:
+            why = "friction that steps change"
         elif pair.stabilize:
             why = "stabilization, which depends on increments"
         else:

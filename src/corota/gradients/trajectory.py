@@ -200,7 +200,7 @@ class Trajectory:
         #: Whether the stress of any material depends on the strain path.
         self.remembers = any(m.remembers for m in materials)
         #: Whether surfaces slip from where they were at the start of an increment.
-        self.slides = any(pair.friction for pair in model.contacts)
+        self.slides = any(pair.most_friction for pair in model.contacts)
 
     def walk(self, increments: Sequence[Increment], given: bool = False) -> Iterator[Point]:
         """Equilibrium states, from the first increment on.

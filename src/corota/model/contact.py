@@ -15,7 +15,7 @@ from corota.errors import InputError, Location
 from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -312,6 +312,10 @@ class ContactPair(Brief):
     steps : tuple of int, optional
         Numbers of the steps in which the surfaces may meet, from 1; all by default. What they
         pressed at the end of the step before fades over the first static step without them.
+    friction_steps : mapping of int to float, optional
+        Other coefficients, each from the begin of a step (its number, from 1) on.
+    friction_ramps : bool
+        Whether these grow from the coefficient before over a static step whose loads grow.
     """
 
     slave: str | Ints
@@ -332,6 +336,8 @@ class ContactPair(Brief):
     shear_limit: float | None = field(default=None, kw_only=True)
     separates: bool = field(default=True, kw_only=True)
     steps: tuple[int, ...] | None = field(default=None, kw_only=True)
+    friction_steps: Mapping[int, float] = field(default_factory=dict, kw_only=True)
+    friction_ramps: bool = field(default=True, kw_only=True)
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
@@ -344,19 +350,23 @@ class ContactPair(Brief):
             )
         for what, value in (
             ("friction", self.friction),
+            *(("friction", value) for value in self.friction_steps.values()),
             ("reach", self.reach),
             ("adjusted gap", self.adjust),
         ):
             if not (math.isfinite(value) and value >= 0.0):
                 raise InputError(f"the {what} of a contact pair must be >= 0", self.where)
-        if self.friction > MOST_FRICTION:
+        self.friction_steps = dict(sorted(self.friction_steps.items()))
+        if self.friction_steps and min(self.friction_steps) < 1:
+            raise InputError("steps of a contact pair are numbers from 1", self.where)
+        if self.most_friction > MOST_FRICTION:
             raise InputError(
-                f"a friction coefficient of {self.friction:g} is too large: for surfaces that do "
-                f"not slip give at most {MOST_FRICTION:g}",
+                f"a friction coefficient of {self.most_friction:g} is too large: for surfaces that "
+                f"do not slip give at most {MOST_FRICTION:g}",
                 self.where,
             )
         limit = self.shear_limit
-        if limit is not None and not (0.0 < limit < math.inf and self.friction):
+        if limit is not None and not (0.0 < limit < math.inf and self.most_friction):
             raise InputError(
                 f"the largest shear traction must be > 0 and go with friction, not {limit:g} with "
                 f"{self.friction:g}",
@@ -381,6 +391,17 @@ class ContactPair(Brief):
             )
         if not self.name:
             self.name = f"{_called(self.slave)}-{_called(self.master)}"
+
+    @property
+    def most_friction(self) -> float:
+        """Largest coefficient of all steps."""
+        return max(self.friction, *self.friction_steps.values(), 0.0)
+
+    def friction_at(self, step: int, share: float) -> float:
+        """Coefficient of friction in a step (from 1), at a share of its change in that step."""
+        changes = [self.friction, *(mu for n, mu in self.friction_steps.items() if n < step)]
+        new = self.friction_steps.get(step, changes[-1])
+        return changes[-1] + share * (new - changes[-1])
 
     @property
     def itself(self) -> bool:

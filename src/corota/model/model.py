@@ -450,6 +450,8 @@ class Model(Loading, LineSections, InitialFields, Stages):
         shear_limit: float | None = None,
         separates: bool = True,
         steps: Sequence[int] | None = None,
+        friction_steps: Mapping[int, float] | None = None,
+        friction_ramps: bool = True,
         name: str = "",
     ) -> None:
         """Define contact of two surfaces, or of one and a rigid curve; see ``docs/contact.md``.
@@ -480,6 +482,8 @@ class Model(Loading, LineSections, InitialFields, Stages):
                 shear_limit=shear_limit,
                 separates=separates,
                 steps=None if steps is None else tuple(steps),
+                friction_steps=friction_steps or {},
+                friction_ramps=friction_ramps,
             )
         )
 

@@ -107,6 +107,7 @@ def joint_lines(model: Model) -> list[str]:
         lines.append(
             f"contact {_named(pair.slave)} on {_named(pair.master)}: {pair.method}, {law}, "
             f"friction {pair.friction:g}"
+            + "".join(f", {mu:g} from step {n}" for n, mu in pair.friction_steps.items())
             + (f" up to {pair.shear_limit:g}" if pair.shear_limit is not None else "")
             + ("" if pair.separates else ", no separation")
             + ("" if pair.steps is None else f", in steps {', '.join(map(str, pair.steps))}")

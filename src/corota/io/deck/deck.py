@@ -24,6 +24,7 @@ from corota.io.deck.drafts import (
     PairDraft,
     PretensionDraft,
     Scope,
+    StartDraft,
     StepDraft,
     TieDraft,
 )
@@ -98,6 +99,8 @@ class Deck:
     pairs: list[PairDraft] = field(default_factory=list)
     interactions: dict[str, InteractionDraft] = field(default_factory=dict)
     general: GeneralDraft | None = None
+    #: ``*CONTACT INITIALIZATION DATA`` by name.
+    starts: dict[str, StartDraft] = field(default_factory=dict)
     #: Reference nodes of distributing couplings, by the set of their elements.
     couplers: dict[str, Draft] = field(default_factory=dict)
     pretensions: list[PretensionDraft] = field(default_factory=list)
@@ -114,6 +117,8 @@ class Deck:
     material: MaterialDraft | None = None
     instance: Instance | None = None
     interaction: InteractionDraft | None = None
+    #: Interaction whose friction the next ``*FRICTION`` changes.
+    changed: InteractionDraft | None = None
     in_assembly: bool = False
 
     def __post_init__(self) -> None:

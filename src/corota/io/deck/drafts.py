@@ -357,9 +357,17 @@ class InteractionDraft:
     pressure: list[float] = field(default_factory=list)
     overclosure: list[float] = field(default_factory=list)
     friction: float = 0.0
+    #: Coefficients that begin with steps, and whether they are reached at the end of the step.
+    friction_steps: dict[int, float] = field(default_factory=dict)
+    friction_ramps: bool = False
     #: Largest shear traction, and whether what has met separates.
     shear_limit: float | None = None
     separates: bool = True
+
+    @property
+    def rubs(self) -> bool:
+        """Whether it has friction in any step."""
+        return max(self.friction, *self.friction_steps.values(), 0.0) > 0.0
 
 
 @dataclass(eq=False, repr=False)
@@ -398,14 +406,35 @@ class PairDraft:
 
 @dataclass(eq=False, repr=False)
 class GeneralDraft:
-    """General contact: whether all outer edges take part, or the pairs of its lines."""
+    """General contact: which outer edges take part, or the pairs of its lines.
+
+    ``included``, ``excluded``, ``properties`` and ``starts`` are lines with two surfaces; a blank
+    one stands for all outer edges.
+    """
 
     card: Card
     every: bool = False
     pairs: list[tuple[Card, Row]] = field(default_factory=list)
+    included: list[tuple[Card, Row]] = field(default_factory=list)
+    excluded: list[tuple[Card, Row]] = field(default_factory=list)
+    properties: list[tuple[Card, Row]] = field(default_factory=list)
+    starts: list[tuple[Card, Row]] = field(default_factory=list)
     interaction: str = ""
     stabilize: int = 0
     where: Location | None = None
+    #: Step that it begins in, from 1.
+    step: int = 0
+
+
+@dataclass(eq=False, repr=False)
+class StartDraft:
+    """One ``*CONTACT INITIALIZATION DATA``: what becomes of overlaps and gaps at the start."""
+
+    name: str
+    card: Card
+    start: str = "adjust"
+    adjust: float = 0.0
+    clearance: float | None = None
 
 
 @dataclass(eq=False, repr=False)

@@ -198,7 +198,7 @@ _TABLE: dict[str, Keyword] = {
         "ALPHA BETA GAMMA DIRECT DIRECTUSERCONTROL EXPLICIT APPLICATION TIMEINTEGRATOR SCHEME "
         "NOHAF",
         "SOLVER RELATIVETOABSOLUTE HAFTOL HALFINCSCALEFACTOR INITIAL IMPACT SCALEFACTOR "
-        "ELEMENTBYELEMENT INCREMENTATION ADIABATIC IMPROVEDDTMETHOD",
+        "ELEMENTBYELEMENT INCREMENTATION ADIABATIC IMPROVEDDTMETHOD FIXEDTIMEINCREMENTATION",
     ),
     "COMPLEX FREQUENCY": Keyword(card("dynamic.complex_frequency"), "CORIOLIS", "SOLVER STORAGE"),
     "FREQUENCY": Keyword(
@@ -244,16 +244,28 @@ _TABLE: dict[str, Keyword] = {
     "TRANSFORM": Keyword(card("tie.transform"), "NSET TYPE", place="model"),
     "CONTACT PAIR": Keyword(
         card("contact.contact_pair"),
-        "INTERACTION TYPE ADJUST SMALLSLIDING SMOOTH",
+        "INTERACTION TYPE ADJUST SMALLSLIDING SMOOTH TIED",
         "EXTENSIONZONE HCRIT TRACKING NOTHICKNESS SUPPLEMENTARYCONSTRAINTS OP WEIGHT CPSET "
         "MECHANICALCONSTRAINT GEOMETRICCORRECTION MINIMUMDISTANCE",
+    ),
+    "CONTACT": Keyword(card("general_contact.general"), "", "OP"),
+    "CONTACT INCLUSIONS": Keyword(card("general_contact.inclusions"), "ALLEXTERIOR"),
+    "CONTACT EXCLUSIONS": Keyword(card("general_contact.exclusions")),
+    "CONTACT PROPERTY ASSIGNMENT": Keyword(card("general_contact.property_assignment")),
+    "CONTACT INITIALIZATION DATA": Keyword(
+        card("general_contact.initialization_data"),
+        "NAME INTERFERENCE SEARCHABOVE INITIALCLEARANCE",
+        "SEARCHBELOW",
         place="model",
     ),
-    "CONTACT": Keyword(card("contact.general"), "", "OP", place="model"),
-    "CONTACT INCLUSIONS": Keyword(card("contact.inclusions"), "ALLEXTERIOR", place="model"),
-    "CONTACT PROPERTY ASSIGNMENT": Keyword(card("contact.property_assignment"), place="model"),
-    "CONTACT FORMULATION": Keyword(card("contact.formulation"), "TYPE", place="model"),
-    "SURFACE PROPERTY ASSIGNMENT": Keyword(card("contact.formulation"), "PROPERTY", place="model"),
+    "CONTACT INITIALIZATION ASSIGNMENT": Keyword(card("general_contact.initialization_assignment")),
+    "CONTACT FORMULATION": Keyword(card("general_contact.formulation"), "TYPE"),
+    "CONTACT CONTROLS ASSIGNMENT": Keyword(
+        card("general_contact.formulation"),
+        "TYPE CONTACTTHICKNESSREDUCTION AUTOMATICOVERCLOSURERESOLUTION NODALEROSION "
+        "SCALEPENALTY STABILIZE SEEDONLY",
+    ),
+    "SURFACE PROPERTY ASSIGNMENT": Keyword(card("general_contact.formulation"), "PROPERTY"),
     "SURFACE INTERACTION": Keyword(
         card("contact.surface_interaction"),
         "NAME",
@@ -270,8 +282,8 @@ _TABLE: dict[str, Keyword] = {
         card("contact.friction"),
         "ROUGH TAUMAX",
         "SLIPTOLERANCE LAGRANGE ELASTICSLIP SHEARTRACTIONSLOPE",
-        place="model",
     ),
+    "CHANGE FRICTION": Keyword(card("contact.change_friction"), "INTERACTION RESET RAMP"),
     "MODEL CHANGE": Keyword(card("contact.model_change"), "TYPE ADD REMOVE"),
     "CLEARANCE": Keyword(card("contact.clearance"), "SLAVE MASTER VALUE", place="model"),
     "TIE": Keyword(
@@ -284,7 +296,8 @@ _TABLE: dict[str, Keyword] = {
         card("contact.contact_controls"),
         "STABILIZE SLAVE MASTER",
         "RESET AUTOMATICTOLERANCES APPROACH MAXCHP PERRMX UERRMX FRICTIONONSET TANGENTFRACTION "
-        "LAGRANGEMULTIPLIER",
+        "LAGRANGEMULTIPLIER ABSOLUTEPENETRATIONTOLERANCE RELATIVEPENETRATIONTOLERANCE "
+        "STIFFNESSSCALEFACTOR TYPE CPSET FASTLOCALTRK GLOBTRKINC SCALEPENALTY WARP",
     ),
     "CONTACT INTERFERENCE": Keyword(card("contact.contact_interference"), "SHRINK", "TYPE OP"),
     "CONTACT PRINT": Keyword(
@@ -342,7 +355,7 @@ _TABLE: dict[str, Keyword] = {
     "OUTPUT": Keyword(
         card("output.output"),
         "FREQUENCY FREQUENCYF VARIABLE",
-        "FIELD HISTORY NAME OP NUMBERINTERVAL TIMEMARKS TIMEINTERVAL TIMEPOINTS",
+        "FIELD HISTORY NAME OP NUMBERINTERVAL TIMEMARKS TIMEINTERVAL TIMEPOINTS FILTER",
     ),
     "PART": Keyword(card("assembly.part"), "NAME", place="model"),
     "END PART": Keyword(card("assembly.end_part"), place="model"),

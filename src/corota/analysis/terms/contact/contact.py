@@ -212,7 +212,12 @@ class ContactTerm(Term):
         scheme = getattr(step, "scheme", "")
         self.persistent = scheme == "energy_momentum"
         self._check_pairs(step, scheme)
-        self._enter(scheme == "central_difference", bool(getattr(step, "ramp", False)))
+        ramps = bool(getattr(step, "ramp", False))
+        #: Whether coefficients of friction change with the loads of the step.
+        self.rubs = self.damps and ramps
+        for pair in self.pairs:
+            pair.rub(self.number, self._changed(pair, 0.0))
+        self._enter(scheme == "central_difference", ramps)
         if self._stiff:
             self._damp()
         system: Any = self.system  # the equations, with their supports
@@ -423,6 +428,7 @@ class ContactTerm(Term):
         for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
             with system.timed("contact"):
                 pair.core.offset = self.offset_at(pair, step_time)
+                pair.rub(self.number, self._changed(pair, step_time))
                 terms = pair.evaluate(x, old, system.nlgeom, bool(p.any() or q.any()))
             found.append(terms)
             acting = terms.acting
@@ -473,6 +479,11 @@ class ContactTerm(Term):
             self.law_force = np.zeros(self.system.n_dofs)
             if self.at is not None:
                 self.law_force = self._forces_of_laws(self.at.terms, self.committed)
+
+    def _changed(self, pair: Pair, step_time: float) -> float:
+        """Share of the change of friction that a step has made at a time of it."""
+        ramps = self.rubs and isinstance(pair.item, ContactPair) and pair.item.friction_ramps
+        return min(step_time / self.period, 1.0) if ramps else 1.0
 
     def offset_at(self, pair: Pair, step_time: float) -> Floats:
         """Offsets of the gaps of a pair at a time of the step, shape (n,)."""

@@ -35,6 +35,8 @@ REDUNDANT = 1e-3
 WEAK = 0.2
 #: And that above which it takes it back for good.
 AMPLE = 0.5
+#: Coefficient that stands for zero where it is larger in other steps.
+LEAST_FRICTION = 1e-9
 EPS = float(np.finfo(float).eps)
 #: Variables of a term, as in the core.
 WIDTH = 20
@@ -68,7 +70,8 @@ class Pair:
     def __init__(self, system: NumberedModel, item: ContactPair | Tie) -> None:
         self.item = item
         self.tied = isinstance(item, Tie)
-        self.friction = 0.0 if isinstance(item, Tie) else item.friction
+        #: Coefficient of friction now.
+        self.friction = 0.0 if isinstance(item, Tie) else item.friction_at(1, 1.0)
         self.law = None if isinstance(item, Tie) else item.law
         #: Largest shear traction of friction [force/length^2].
         limit = None if isinstance(item, Tie) else item.shear_limit
@@ -88,7 +91,7 @@ class Pair:
         self.place = np.full(len(system.per_node) + 1, -1, np.int64)
         self.place[self.nodes[: self.of_nodes]] = np.arange(self.of_nodes)
         self.full = np.asarray(self.core.full_area, float)
-        self.two = self.tied or self.friction > 0.0
+        self.two = isinstance(item, Tie) or item.most_friction > 0.0
         self.width = self.n * (2 if self.two else 1)
         self.first = 0
         self.reference = np.column_stack([system.model.mesh.points, np.zeros(len(system.per_node))])
@@ -126,6 +129,16 @@ class Pair:
         self.noise = 32.0 * EPS * (system.length + far)  # gaps that are rounding [length]
         self.conditions = self._conditions()
         self.name = item.name
+
+    def rub(self, step: int, share: float) -> None:
+        """Take the coefficient of friction of a step, at a share of its change in it."""
+        if isinstance(self.item, Tie) or not self.item.friction_steps:
+            return
+        # Tractions stay unknowns where a coefficient is zero for a time.
+        friction = max(self.item.friction_at(step, share), LEAST_FRICTION)
+        if friction != self.friction:
+            self.friction = friction
+            self.conditions = self._conditions()
 
     def _conditions(self) -> _core.ContactLaw:
         """The law of the constraints: what gaps, slips and tractions owe each other."""

@@ -114,9 +114,11 @@ class _Builder:
                 adjust=pair.adjust,
                 adjust_nodes=self._adjusted(pair),
                 smooth=smooth,
-                shear_limit=interaction.shear_limit if interaction.friction else None,
+                shear_limit=interaction.shear_limit if interaction.rubs else None,
                 separates=interaction.separates,
                 steps=pair.acts(len(self.deck.steps)),
+                friction_steps=interaction.friction_steps,
+                friction_ramps=interaction.friction_ramps or not interaction.friction_steps,
             )
         )
 

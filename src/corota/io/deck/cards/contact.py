@@ -10,7 +10,7 @@ import numpy as np
 
 from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
-from corota.io.deck.drafts import GeneralDraft, InteractionDraft, PairDraft
+from corota.io.deck.drafts import InteractionDraft, PairDraft
 from corota.io.deck.lexer import key
 from corota.model.contact import MOST_FRICTION
 
@@ -122,76 +122,21 @@ def contact_pair(deck: Deck, card: Card) -> None:
         if adjust < 0.0:
             deck.error(card, card.at("ADJUST"), "ADJUST must be >= 0")
             return
+    tied = card.has("TIED")
+    if tied:
+        deck.note(f"{card.where}: TIED surfaces are joined where they are at the start")
     for row in _pair_rows(deck, card):
-        pair = PairDraft(card, row, row.get(0), row.get(1) or row.get(0))
+        pair = PairDraft(card, row, row.get(0), row.get(1) or row.get(0), tied=tied)
         pair.interaction, pair.method = interaction, method
+        begins_in(pair, len(deck.steps))
         pair.start, pair.adjust, pair.adjust_set, pair.smooth = start, adjust, nodes, smooth
         deck.pairs.append(pair)
 
 
-def general(deck: Deck, card: Card) -> None:
-    """``*CONTACT``: opens general contact; its pairs are those of the cards below it."""
-    deck.no_rows(card)
-    if deck.general is not None:
-        deck.error(card, card.where, f"general contact is given in {deck.general.card.where}")
-        return
-    deck.general = GeneralDraft(card)
-
-
-def inclusions(deck: Deck, card: Card) -> None:
-    """``*CONTACT INCLUSIONS[, ALL EXTERIOR]``: what touches; a blank stands for all surfaces."""
-    into = _general(deck, card)
-    if into is None:
-        return
-    rows = list(card.rows())
-    if card.has("ALLEXTERIOR"):
-        deck.no_rows(card)
-        into.every = True
-    elif not rows:
-        deck.error(card, card.where, "ALL EXTERIOR, or a line with two surfaces, is missing")
-    for row in rows:
-        deck.extra_fields(card, row, 2)
-        if not row.get(0) and not row.get(1):
-            into.every = True
-        elif not row.get(0):
-            deck.row_error(
-                card,
-                row,
-                0,
-                "contact of one surface with all others is not supported",
-                "name both surfaces of each pair",
-            )
-        else:
-            into.pairs.append((card, row))
-
-
-def property_assignment(deck: Deck, card: Card) -> None:
-    """``*CONTACT PROPERTY ASSIGNMENT``: two blanks for all surfaces, interaction."""
-    into = _general(deck, card)
-    for row in card.rows():
-        deck.extra_fields(card, row, 3)
-        if row.get(0) or row.get(1):
-            deck.row_error(
-                card,
-                row,
-                0,
-                "one interaction holds for all of general contact",
-                "give *CONTACT PAIR with an INTERACTION of its own for single pairs",
-            )
-        elif into is not None and row.get(2):
-            into.interaction, into.where = row.get(2), row.at(2)
-
-
-def formulation(deck: Deck, card: Card) -> None:
-    """``*CONTACT FORMULATION``, ``*SURFACE PROPERTY ASSIGNMENT``: control of general contact."""
-    if _general(deck, card) is not None:
-        deck.note(f"{card.where}: {card.spelled} has no effect: contact is mortar, finite sliding")
-
-
-def _general(deck: Deck, card: Card) -> GeneralDraft | None:
-    if deck.general is None:
-        deck.error(card, card.where, "the card belongs under *CONTACT, but there is none before it")
-    return deck.general
+def begins_in(pair: PairDraft, step: int) -> None:
+    """Let a pair act from a step on, as explicit steps of Abaqus define contact."""
+    if step > 1:
+        pair.changes = {0: False, step: True}
 
 
 def tie(deck: Deck, card: Card) -> None:
@@ -296,9 +241,40 @@ def surface_behavior(deck: Deck, card: Card) -> None:
         deck.note(f"{card.where}: {card.spelled}: {text}")
 
 
+def change_friction(deck: Deck, card: Card) -> None:
+    """``*CHANGE FRICTION, INTERACTION=[, RESET]``: ``*FRICTION`` below it holds from this step."""
+    deck.no_rows(card)
+    name = deck.required(card, "INTERACTION")
+    found = deck.interactions.get(key(name))
+    deck.changed = None
+    if deck.step is None:
+        deck.error(card, card.where, "the card belongs in a step")
+    elif found is None and name:
+        names = [i.name for i in deck.interactions.values()]
+        text = f"no *SURFACE INTERACTION named {numerals.shown(name)}"
+        deck.error(card, card.at("INTERACTION"), text, hint=nearest(name, names))
+    elif found is not None:
+        # Abaqus changes it over the step, as it lets loads grow; CalculiX at once.
+        found.friction_ramps = card.has("RAMP") or deck.dialect == "abaqus"
+        if card.has("RESET"):
+            found.friction_steps[len(deck.steps)] = found.friction
+        else:
+            deck.changed = found
+
+
 def friction(deck: Deck, card: Card) -> None:
     """``*FRICTION``: coefficient, stick slope; ``ROUGH``: what touches does not slide."""
-    into = _open(deck, card)
+    if deck.step is not None:
+        into, deck.changed = deck.changed, None
+        if into is None:
+            deck.error(
+                card,
+                card.where,
+                f"{card.spelled} inside a step",
+                hint="put *CHANGE FRICTION, INTERACTION= before it to change an interaction",
+            )
+    else:
+        into = _open(deck, card)
     rows = list(card.rows())
     if into is None:
         return
@@ -306,9 +282,11 @@ def friction(deck: Deck, card: Card) -> None:
         limit = deck.parameter_number(card, "TAUMAX", math.inf, 0.0)
         if limit == 0.0:
             deck.error(card, card.at("TAUMAX"), "the largest shear traction must be > 0")
+        if deck.step is not None and limit != into.shear_limit:
+            deck.error(card, card.at("TAUMAX"), "the largest shear traction stays for all steps")
         into.shear_limit = limit or None
     if card.has("ROUGH"):
-        into.friction = MOST_FRICTION
+        _rub(deck, into, MOST_FRICTION)
         return
     if len(rows) != 1:
         deck.error(card, card.where, f"one data line is expected, found {len(rows)}")
@@ -320,9 +298,17 @@ def friction(deck: Deck, card: Card) -> None:
     if mu < 0.0:
         deck.row_error(card, row, 0, f"the friction coefficient must be >= 0, not {mu:g}")
         return
-    into.friction = mu
+    _rub(deck, into, mu)
     if any(row.fields[1:]):
         deck.note(f"{row.at(1)}: {card.spelled}: no stick slope is needed: sticking is exact")
+
+
+def _rub(deck: Deck, into: InteractionDraft, mu: float) -> None:
+    """Set the coefficient of the model, or that from the open step on."""
+    if deck.step is None:
+        into.friction = mu
+    else:
+        into.friction_steps[len(deck.steps)] = mu
 
 
 def model_change(deck: Deck, card: Card) -> None:

@@ -368,6 +368,7 @@ def _pair(mesh: Mesh, pair: Any) -> Any:
     law = pair.law and (pair.law.kind, pair.law.pressure, pair.law.overclosure)
     found: list[Any] = [pair.method, pair.friction, law, pair.clearance, pair.smooth]
     found += [pair.shear_limit, pair.separates, pair.steps]
+    found += [pair.friction_steps, bool(pair.friction_steps) and pair.friction_ramps]
     for side in (pair.slave, pair.master):
         if isinstance(side, RigidCurve):
             # Arcs may be written in pieces.

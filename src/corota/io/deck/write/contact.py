@@ -54,7 +54,7 @@ def contact_cards(writer: Writer) -> Iterator[str]:
             yield _behavior(pair.law)
         if not pair.separates:
             yield "*SURFACE BEHAVIOR, NO SEPARATION\n"
-        if pair.friction:
+        if pair.most_friction:
             limit = "" if pair.shear_limit is None else f", TAUMAX={float(pair.shear_limit)!r}"
             yield f"*FRICTION{limit}\n{float(pair.friction)!r}\n"
         _check_heights(model, pair)
@@ -80,7 +80,7 @@ def contact_cards(writer: Writer) -> Iterator[str]:
 
 def step_cards(writer: Writer, number: int) -> Iterator[str]:
     """Cards of contact that stand in a step, counted from 1."""
-    for pair in writer.model.contacts:
+    for place, pair in enumerate(writer.model.contacts, start=1):
         slave, master = surfaces(writer, pair)
         if pair.start == "ramp" and number == 1:
             yield f"*CONTACT INTERFERENCE, SHRINK\n{slave}, {master}\n"
@@ -90,6 +90,10 @@ def step_cards(writer: Writer, number: int) -> Iterator[str]:
             yield f"*MODEL CHANGE, TYPE=CONTACT PAIR, {change}\n{slave}, {master}\n"
         if pair.stabilize and pair.stabilize_from == number:
             yield f"*CONTACT CONTROLS, STABILIZE, SLAVE={slave}, MASTER={master}\n"
+        if number in pair.friction_steps:
+            ramp = ", RAMP" if pair.friction_ramps else ""
+            yield f"*CHANGE FRICTION, INTERACTION=INTERACTION{place}{ramp}\n"
+            yield f"*FRICTION\n{float(pair.friction_steps[number])!r}\n"
 
 
 def surfaces(writer: Writer, pair: ContactPair) -> tuple[str, str]:
