@@ -254,7 +254,7 @@ class Petsc:
     def _scale_of(self, values: Floats) -> Floats:
         """Powers of two that bring the diagonal, or the largest coupling, of equations near one.
 
-        So singular and soft are told apart in any system of units.
+        So singular and soft differ in any system of units.
         """
         rows, communicator = self._rows, self.communicator
         diagonal = rows.whole(np.abs(values[self._diagonal]))

@@ -322,7 +322,7 @@ class FrdWriter:
         return [entry for entry in found if len(entry[1])]
 
     def _slaves(self, frame: Frame) -> NDArray[np.bool_]:
-        """Nodes of slave surfaces; of models from files those where anything is told."""
+        """Nodes of slave surfaces; of models from files those that have a value."""
         mesh = self._model.mesh
         out = np.zeros(mesh.n_nodes, dtype=bool)
         for pair in self._model.contacts:

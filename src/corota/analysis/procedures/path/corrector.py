@@ -81,7 +81,7 @@ def correct(
     control : Control
     settings : Settings
     report : callable, optional
-        Told iteration, judgement, largest correction and load factor.
+        Called with iteration, residual norms, largest correction and load factor.
     loose : bool
         Whether what moves freely may be brought to a hold.
 

@@ -80,9 +80,9 @@ class PathTracer(ABC):
         Of Newton's method.
     plan : Plan
     report : callable, optional
-        Told attempt, iteration, judgement, largest correction, load factor and size.
+        Called with attempt, iteration, residual norms, largest correction, load factor and size.
     cut_back : callable, optional
-        Told attempt, reason and the next size.
+        Called with attempt, reason and the next size.
     """
 
     def __init__(
@@ -105,7 +105,7 @@ class PathTracer(ABC):
         self.metric: Metric
         self.first_metric: Metric
         self.tangent: Tangent
-        #: Tangent against which events are told: behind a critical point, not at it.
+        #: Tangent against which events are found: behind a critical point, not at it.
         self.mark: Tangent
         self.guess: Point | None = None
         #: Where the branch that is followed began.
@@ -381,7 +381,7 @@ class PathTracer(ABC):
                 self.system, Station(0.0, self.base, self.mark), end, *self._between(end)
             )
             self._evaluated = None  # others were tried since the point that is taken
-            # A kink that cannot be told to seven digits is passed all the same.
+            # A kink that seven digits do not resolve is passed all the same.
             if critical is None and not (end.behind and self.attempt > KINK):
                 return None
             point = end.point if critical is None else critical.point
