@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -12,9 +12,14 @@ from corota.analysis.state_tree import Reader, Writer, digest_of
 from corota.errors import UnsupportedError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
     from corota.analysis.equations import System
     from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.state import State
+    from corota.analysis.state_tree import Tree
     from corota.analysis.terms.moving_mass import MovingMass
     from corota.model.model import Model
     from corota.model.steps import Step
@@ -48,8 +53,8 @@ class Checkpoint:
     step_time: float
     factor: float
     kind: str
-    tree: dict[str, Any]
-    arrays: list[Any]
+    tree: Tree
+    arrays: list[NDArray[np.generic]]
     leave_step: bool = False
     processes: list[int] = field(default_factory=list)
 
@@ -106,7 +111,7 @@ class Analysis(Protocol):
     steps: list[Step]
     warned: set[str]
     begun: list[Begun]
-    as_built: dict[str, Any]
+    as_built: Mapping[str, object]
     communicator: Communicator
 
     def known(self) -> dict[str, object]:
@@ -124,7 +129,7 @@ class Resumption:
 
     analysis: Analysis
     checkpoint: Checkpoint
-    built: dict[str, Any]
+    built: Mapping[str, NDArray[np.generic]]
     known: dict[str, object] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -176,7 +181,7 @@ def take(analysis: Analysis, state: State, where: tuple[int, int], factor: float
     )
 
 
-def model_tree(model: Model, steps: list[Step]) -> tuple[Any, list[Any], str]:
+def model_tree(model: Model, steps: list[Step]) -> tuple[Tree, list[NDArray[np.generic]], str]:
     """A model and its steps by value: tree, arrays and digest.
 
     Raises

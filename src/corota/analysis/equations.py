@@ -8,7 +8,7 @@ elements, loads and supports, but no increments or iterations.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.linear.solvers import LinearSolver
+    from corota.analysis.linear.types import Sparse
     from corota.analysis.terms.term import Role, Term
     from corota.model.model import Model
     from corota.model.steps import Step
@@ -376,7 +377,7 @@ class System(NumberedModel):
 
         return name_motion(self, error, self.scales.ratio)
 
-    def _add_load_stiffness(self, at: Evaluation) -> tuple[bool, Any]:
+    def _add_load_stiffness(self, at: Evaluation) -> tuple[bool, Sparse | None]:
         import scipy.sparse as sp
 
         assert at.load_stiffness is not None
@@ -407,7 +408,7 @@ class System(NumberedModel):
 
     def _solve_unsymmetric(
         self,
-        matrix: Any,
+        matrix: Sparse,
         rhs: Floats,
         du_prescribed: Floats,
         constrained: NDArray[np.bool_],

@@ -7,7 +7,7 @@ import os
 import time as clock
 import warnings
 from copy import copy
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -42,7 +42,7 @@ from corota.model.steps import in_force
 from corota.results.results import Frame, Results
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -224,7 +224,7 @@ class Analysis:
         #: Starts of the steps so far, digests of the system's initial arrays, and the
         #: checkpoint that the run continues from.
         self.begun: list[Begun] = []
-        self.as_built: dict[str, Any] = {}
+        self.as_built: Mapping[str, object] = {}
         self.start = None if start is None else start.part(self.communicator)
         self.resumed = self.start
 

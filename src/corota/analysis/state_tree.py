@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -23,7 +23,15 @@ from corota.analysis.linear.triplets import arrays_of
 from corota.errors import CorotaError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from corota.analysis.linear.types import Sparse
+
+    Kept = TypeVar("Kept")
+#: Part of a tree: dicts, lists, strings, numbers and None, as in JSON.
+Tree: TypeAlias = Any
 
 #: Packages whose classes may be made from a tree.
 PACKAGES = ("corota.analysis.", "corota.model.", "corota.mesh", "corota.results.", "corota.errors")
@@ -43,7 +51,7 @@ class Unstorable(CorotaError):
     """An object that cannot be stored in a checkpoint."""
 
 
-def digest(array: Any) -> str:
+def digest(array: NDArray[np.generic]) -> str:
     """Digest of the numbers, shape and type of an array."""
     import hashlib
 
@@ -53,15 +61,15 @@ def digest(array: Any) -> str:
     return own.hexdigest()
 
 
-def _is_core(value: Any) -> bool:
+def _is_core(value: object) -> bool:
     return hasattr(type(value), "restore_state")
 
 
-def _is_code(value: Any) -> bool:
+def _is_code(value: object) -> bool:
     return callable(value) and not hasattr(type(value), "__dataclass_fields__")
 
 
-def _attributes(value: Any) -> dict[str, Any]:
+def _attributes(value: object) -> dict[str, object]:
     skip = _recomputed(type(value))
     return {k: v for k, v in _parts(value).items() if k not in skip}
 
@@ -72,7 +80,7 @@ def _recomputed(kind: type) -> frozenset[str]:
     return found
 
 
-def _parts(value: Any) -> dict[str, Any]:
+def _parts(value: object) -> dict[str, object]:
     """Attributes of an object, with or without a dict."""
     slots = [name for kind in type(value).__mro__ for name in getattr(kind, "__slots__", ())]
     own = {name: getattr(value, name) for name in slots if hasattr(value, name)}
@@ -99,18 +107,18 @@ class Writer:
 
     def __init__(
         self,
-        known: dict[str, Any],
-        as_built: dict[str, Any] | None = None,
+        known: Mapping[str, object],
+        as_built: Mapping[str, object] | None = None,
         by_value: bool = False,
     ) -> None:
-        self.arrays: list[Any] = []
+        self.arrays: list[NDArray[np.generic]] = []
         self._known = {id(value): name for name, value in known.items()}
         self._as_built = as_built or {}
         self._by_value = by_value
         self._seen: dict[int, int] = {}
-        self._alive: list[Any] = []  # so that no identity is given twice
+        self._alive: list[object] = []  # so that no identity is given twice
 
-    def write(self, value: Any, place: str = "") -> Any:
+    def write(self, value: object, place: str = "") -> Tree:
         """Tree of a value.
 
         Raises
@@ -140,7 +148,7 @@ class Writer:
         self._alive.append(value)
         return {"n": number} | self._body(value, place)
 
-    def _body(self, value: Any, place: str) -> dict[str, Any]:
+    def _body(self, value: Any, place: str) -> Tree:
         if isinstance(value, np.ndarray):
             built = self._as_built.get(place)
             if isinstance(built, np.ndarray):
@@ -181,18 +189,18 @@ class Writer:
         }
         return {"class": f"{module}:{kind.__qualname__}", "parts": body}
 
-    def _order(self, value: Any) -> dict[str, Any]:
+    def _order(self, value: NDArray[np.generic]) -> Tree:
         if value.dtype.kind not in KINDS:
             raise Unstorable(f"an array of {value.dtype} cannot be stored in a checkpoint")
         columns = value.flags.f_contiguous and not value.flags.c_contiguous
-        body: dict[str, Any] = {"array": self._array(value.T if columns else value)}
+        body: Tree = {"array": self._array(value.T if columns else value)}
         return body | {"columns": True} if columns else body
 
-    def _array(self, value: Any) -> int:
+    def _array(self, value: ArrayLike) -> int:
         self.arrays.append(np.array(value))
         return len(self.arrays) - 1
 
-    def _sparse(self, value: Any) -> dict[str, Any]:
+    def _sparse(self, value: Sparse) -> Tree:
         return {
             "sparse": type(value).__name__,
             "shape": list(value.shape),
@@ -215,13 +223,16 @@ class Reader:
     """
 
     def __init__(
-        self, arrays: Any, known: dict[str, Any], built: dict[str, Any] | None = None
+        self,
+        arrays: Sequence[NDArray[np.generic]],
+        known: Mapping[str, object],
+        built: Mapping[str, NDArray[np.generic]] | None = None,
     ) -> None:
         self._arrays, self._known, self._built = arrays, known, built or {}
-        self._made: dict[int, Any] = {}
-        self._taken: dict[int, Any] = {}  # fresh objects that have their state already
+        self._made: dict[int, object] = {}
+        self._taken: dict[int, object] = {}  # fresh objects that have their state already
 
-    def read(self, tree: Any, fresh: Any = None) -> Any:
+    def read(self, tree: Tree, fresh: object = None) -> Any:
         """The value of a tree; `fresh` is what stands in its place, and is used if it fits.
 
         Raises
@@ -234,7 +245,7 @@ class Reader:
         except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
             raise UnsuitableState(f"its contents are damaged: {error!r:.200}") from None
 
-    def _value(self, tree: Any, fresh: Any = None) -> Any:
+    def _value(self, tree: Tree, fresh: object = None) -> Any:
         if not isinstance(tree, dict):
             return tree
         if "known" in tree:
@@ -255,12 +266,12 @@ class Reader:
             fresh = None  # two places that were one when they were new
         return self._whole(tree, fresh)
 
-    def _plain(self, kind: str, body: Any) -> Any:
+    def _plain(self, kind: str, body: Tree) -> Any:
         if kind == "scalar":
             return self._arrays[body][()]
         return complex(*body) if kind == "complex" else bytes.fromhex(body)
 
-    def _whole(self, tree: dict[str, Any], fresh: Any) -> Any:
+    def _whole(self, tree: Tree, fresh: object) -> object:
         number = tree["n"]
         if "list" in tree:
             old: Any = list(fresh) if isinstance(fresh, list) else []
@@ -283,7 +294,7 @@ class Reader:
             out = self._keep(number, self._leaf(tree, fresh))
         return out
 
-    def _leaf(self, tree: dict[str, Any], fresh: Any) -> Any:
+    def _leaf(self, tree: Tree, fresh: Any) -> object:
         if "array" in tree:
             value = self._arrays[tree["array"]].copy()  # the analysis changes it in place
             return value.T if tree.get("columns") else value
@@ -332,7 +343,7 @@ class Reader:
             return fresh
         raise UnsuitableState("a part of the tree has an unknown kind")
 
-    def _object(self, tree: dict[str, Any], fresh: Any) -> Any:
+    def _object(self, tree: Tree, fresh: object) -> object:
         kind = _class(tree["class"])
         own = fresh if type(fresh) is kind else kind.__new__(kind)
         self._keep(tree["n"], own)
@@ -347,19 +358,19 @@ class Reader:
             object.__setattr__(own, name, value)
         return own
 
-    def _keep(self, number: int, value: Any) -> Any:
+    def _keep(self, number: int, value: Kept) -> Kept:
         self._made[number] = value
         if value is not None:
             self._taken[id(value)] = value
         return value
 
 
-def dict_of(tree: dict[str, Any]) -> dict[str, Any]:
+def dict_of(tree: Tree) -> dict[str, Tree]:
     """Trees of the values of a dict with names for keys."""
     return dict(tree["dict"])
 
 
-def _beside(trees: list[Any], fresh: Any) -> Iterator[tuple[Any, Any]]:
+def _beside(trees: list[Tree], fresh: Sequence[object]) -> Iterator[tuple[Tree, object]]:
     for i, tree in enumerate(trees):
         yield tree, fresh[i] if i < len(fresh) else None
 
@@ -379,7 +390,9 @@ def _class(name: str) -> Any:
     return found
 
 
-def arrays_as_built(value: Any, known: dict[str, Any], place: str) -> dict[str, Any]:
+def arrays_as_built(
+    value: object, known: Mapping[str, object], place: str
+) -> dict[str, str | NDArray[np.generic]]:
     """The arrays of a value by their place: copies of small ones, digests of others.
 
     Digests of small arrays are needed for a checkpoint only, which small jobs do not write.
@@ -389,7 +402,7 @@ def arrays_as_built(value: Any, known: dict[str, Any], place: str) -> dict[str, 
     return found.digests
 
 
-def copies_as_built(value: Any, known: dict[str, Any]) -> dict[str, Any]:
+def copies_as_built(value: object, known: Mapping[str, object]) -> dict[str, NDArray[np.generic]]:
     """Copies of the arrays of a value by their digest."""
     found = _Digests(known, copy=True)
     found.write(value, "")
@@ -399,16 +412,16 @@ def copies_as_built(value: Any, known: dict[str, Any]) -> dict[str, Any]:
 class _Digests(Writer):
     """A writer that only notes where arrays are."""
 
-    def __init__(self, known: dict[str, Any], copy: bool = False, keep: int = -1) -> None:
+    def __init__(self, known: Mapping[str, object], copy: bool = False, keep: int = -1) -> None:
         super().__init__(known)
-        self.digests: dict[str, Any] = {}
-        self.copies: dict[str, Any] = {}
+        self.digests: dict[str, str | NDArray[np.generic]] = {}
+        self.copies: dict[str, NDArray[np.generic]] = {}
         self._copy, self._keep = copy, keep
 
-    def _order(self, value: Any) -> dict[str, Any]:
+    def _order(self, value: NDArray[np.generic]) -> Tree:
         raise AssertionError
 
-    def _body(self, value: Any, place: str) -> dict[str, Any]:
+    def _body(self, value: object, place: str) -> Tree:
         if isinstance(value, np.ndarray):
             if value.nbytes <= self._keep:
                 self.digests[place] = value.copy()
@@ -422,7 +435,7 @@ class _Digests(Writer):
         return super()._body(value, place)
 
 
-def digest_of(tree: Any, arrays: list[Any]) -> str:
+def digest_of(tree: Tree, arrays: Sequence[NDArray[np.generic]]) -> str:
     """Digest of a tree with its arrays; where things were read from does not count."""
     import hashlib
     import json
@@ -433,7 +446,7 @@ def digest_of(tree: Any, arrays: list[Any]) -> str:
     return own.hexdigest()
 
 
-def _without_places(tree: Any) -> Any:
+def _without_places(tree: Tree) -> Tree:
     if isinstance(tree, dict):
         return {k: _without_places(v) for k, v in tree.items() if k not in ("where", "notes")}
     if isinstance(tree, list):

@@ -19,11 +19,14 @@ from corota.analysis.linear.triplets import Triplets
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from corota.analysis.constraints.relations import Relation
     from corota.analysis.linear.matrix import SymmetricPattern
     from corota.analysis.linear.reduction import Rows
+    from corota.analysis.linear.types import Kind, Sparse
     from corota.errors import Location
     from corota.model.model import Model
 
@@ -103,7 +106,7 @@ class LinearizedConstraints:
         out[self.constraints.dependent] = self.g @ out
         return out
 
-    def unknowns(self, x: Any) -> Any:
+    def unknowns(self, x: NDArray[Kind]) -> NDArray[Kind]:
         """Entries of the unknowns of a vector with one for each dof."""
         return x[self.constraints.free]
 
@@ -118,11 +121,11 @@ class LinearizedConstraints:
         return replace(self, curvature=0.0)
 
     @cached_property
-    def transform(self) -> Any:
+    def transform(self) -> Sparse:
         """All dofs in global axes by the unknowns, scipy CSC."""
         return self.constraints.reduction.whole(self.constraints.rows_of(self.g))
 
-    def reduce_columns(self, columns: Any) -> Any:
+    def reduce_columns(self, columns: Sparse) -> Sparse:
         """Columns of forces in global axes as those on the unknowns, scipy sparse."""
         return self.transform.T @ columns
 
@@ -131,7 +134,7 @@ class LinearizedConstraints:
         whole = self.reduce_entries(entries, self.constraints.n)
         return Triplets.halves(0.5 * (whole + whole.T))[0]
 
-    def reduce_entries(self, entries: Triplets, n: int) -> Any:
+    def reduce_entries(self, entries: Triplets, n: int) -> Sparse:
         """The reduced matrix of entries of all `n` dofs in global axes, scipy CSR."""
         return self.transform.T @ entries.matrix(n) @ self.transform
 
@@ -161,7 +164,7 @@ class LinearizedConstraints:
             values, constraints.rows_of(self.g), self.g, self.geometric_stiffness(residual)
         )
 
-    def reduce_full(self, matrix: Any, residual: Floats) -> Any:
+    def reduce_full(self, matrix: Sparse, residual: Floats) -> Sparse:
         """The reduced matrix of an unsymmetric one, scipy CSC."""
         return self.constraints.reduction.reduce_full(
             matrix, self.constraints.rows_of(self.g), self.g, self.geometric_stiffness(residual)
@@ -346,7 +349,7 @@ class Constraints:
         # Forces at the middle: half of the geometric stiffness of a change at the end.
         return LinearizedConstraints(self, end, g, direct, 0.5)
 
-    def _substituted(self, jacobian: Any) -> tuple[Any, Any]:
+    def _substituted(self, jacobian: Callable[[Relation], Floats]) -> tuple[Sparse, Sparse]:
         import scipy.sparse as sp
 
         rows, columns, values = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
@@ -368,7 +371,7 @@ class Constraints:
                 g = outside + inside @ g
         return g.tocsr(), direct
 
-    def rows_of(self, g: Any) -> Rows:
+    def rows_of(self, g: Sparse) -> Rows:
         """Rows of ``Q G`` that are not those of the identity."""
         import scipy.sparse as sp
 

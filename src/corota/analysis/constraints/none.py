@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.linear.matrix import SymmetricPattern
     from corota.analysis.linear.triplets import Triplets
+    from corota.analysis.linear.types import Kind, Sparse
     from corota.model.model import Model
 
     Floats = NDArray[np.float64]
@@ -40,7 +41,7 @@ class Identity(LinearizedConstraints):
     def move(self, dv: Floats) -> Floats:
         return dv
 
-    def unknowns(self, x: Any) -> Any:
+    def unknowns(self, x: NDArray[Kind]) -> NDArray[Kind]:
         return x
 
     def expand(self, x: Floats) -> Floats:
@@ -52,13 +53,13 @@ class Identity(LinearizedConstraints):
     def reduce(self, values: Floats, residual: Floats) -> Floats:
         return values
 
-    def reduce_full(self, matrix: Any, residual: Floats) -> Any:
+    def reduce_full(self, matrix: Sparse, residual: Floats) -> Sparse:
         return matrix
 
-    def reduce_columns(self, columns: Any) -> Any:
+    def reduce_columns(self, columns: Sparse) -> Sparse:
         return columns
 
-    def reduce_entries(self, entries: Triplets, n: int) -> Any:
+    def reduce_entries(self, entries: Triplets, n: int) -> Sparse:
         return entries.matrix(n)
 
     def symmetric_half(self, entries: Triplets) -> Triplets:

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -69,7 +69,8 @@ def extra_dofs(model: Model, in_element: NDArray[np.bool_]) -> NDArray[np.uint8]
 def reference_nodes(model: Model) -> Ints:
     """Nodes that carry rigid curves; they have two displacements and a rotation."""
     curves = [pair.master for pair in model.contacts if isinstance(pair.master, RigidCurve)]
-    found = {curve.turning_node for curve in curves} - {None}
+    nodes = (curve.turning_node for curve in curves)
+    found = {node for node in nodes if node is not None}
     return _existing(model, found)
 
 
@@ -79,7 +80,7 @@ def gap_nodes(model: Model) -> Ints:
     return _existing(model, {node for nodes, *_ in gaps for node in nodes})
 
 
-def _existing(model: Model, found: set[Any]) -> Ints:
+def _existing(model: Model, found: set[int]) -> Ints:
     for node in found:
         if not 0 <= node < model.mesh.n_nodes:
             raise ModelError(f"a rigid curve has reference node index {node}, which does not exist")

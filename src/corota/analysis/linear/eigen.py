@@ -11,7 +11,7 @@ D. C. Sorensen and C. Yang, ARPACK Users' Guide (1998), ch. 3.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from scipy.linalg import eigh
@@ -20,9 +20,12 @@ from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from corota.analysis.linear.factor import Factor
+    from corota.analysis.linear.types import Sparse
     from corota.analysis.terms.linearized import LinearMotion
 
     Floats = NDArray[np.float64]
@@ -57,7 +60,7 @@ def shifted_factor(lin: LinearMotion) -> tuple[Factor, float]:
         return lin.factor(k + shift * m, lin.symmetric), shift
 
 
-def _largest_ratio(k: Any, m: Any) -> float:
+def _largest_ratio(k: Sparse, m: Sparse) -> float:
     stiff, heavy = k.diagonal(), m.diagonal()
     moving = heavy > 0.0
     return float((stiff[moving] / heavy[moving]).max(initial=0.0))
@@ -82,9 +85,12 @@ def symmetric_modes(lin: LinearMotion, count: int) -> tuple[Floats, Floats]:
     invert = LinearOperator(shape, matvec=lambda x: factor.solve(x.ravel()), dtype=float)
     start = factor.solve(m @ np.random.default_rng(7).standard_normal(n))
 
-    def run(k: int, which: Any) -> tuple[Floats, Floats]:
+    def run(k: int, which: Literal["LM", "LA", "SA"]) -> tuple[Floats, Floats]:
         # With a shift, `which` goes by 1 / (square + shift). The stiffness itself is not used.
-        return eigsh(weigh, k=k, M=weigh, sigma=-shift, OPinv=invert, v0=start, which=which)
+        found: tuple[Floats, Floats] = eigsh(
+            weigh, k=k, M=weigh, sigma=-shift, OPinv=invert, v0=start, which=which
+        )
+        return found
 
     values, shapes = run(count, "LM" if factor.negative == 0 else "LA")
     if factor.negative != 0:
@@ -97,7 +103,7 @@ def symmetric_modes(lin: LinearMotion, count: int) -> tuple[Floats, Floats]:
     return values[order], shapes[:, order]
 
 
-def _dense_symmetric(factor: Factor, m: Any, shift: float, count: int) -> tuple[Floats, Floats]:
+def _dense_symmetric(factor: Factor, m: Sparse, shift: float, count: int) -> tuple[Floats, Floats]:
     """Small systems, or most of a spectrum: by the flexibility, which may be indefinite."""
     n = m.shape[0]
     weights, axes = np.linalg.eigh(m.toarray())
@@ -143,7 +149,7 @@ def unsymmetric_modes(lin: LinearMotion, count: int) -> tuple[Complex, Complex]:
     return _first(values, x, count)
 
 
-def quadratic_modes(lin: LinearMotion, damping: Any, count: int) -> tuple[Complex, Complex]:
+def quadratic_modes(lin: LinearMotion, damping: Sparse, count: int) -> tuple[Complex, Complex]:
     """Eigenvalues ``s`` of ``s^2 M + s C + K``, those nearest to zero; see `unsymmetric_modes`.
 
     `damping` is C with the gyroscopic matrix, of all unknowns.
@@ -175,7 +181,7 @@ def quadratic_modes(lin: LinearMotion, damping: Any, count: int) -> tuple[Comple
     return _first(values[keep], z[:n, keep], count)
 
 
-def _nearest(apply: Any, n: int, count: int) -> tuple[Complex, Complex]:
+def _nearest(apply: Callable[[Floats], Floats], n: int, count: int) -> tuple[Complex, Complex]:
     """Largest eigenvalues of an operator, without those of unknowns that have no mass."""
     if n <= 2 * DENSE or 4 * count > n:
         theta, x = np.linalg.eig(apply(np.eye(n)))

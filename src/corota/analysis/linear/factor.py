@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,6 +13,8 @@ from corota.errors import SingularError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from corota.analysis.linear.types import Sparse
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -45,7 +47,12 @@ class Factor:
     """
 
     def __init__(
-        self, matrix: Any, symmetric: bool, node: Ints, multiplier: NDArray[np.bool_], threads: int
+        self,
+        matrix: Sparse,
+        symmetric: bool,
+        node: Ints,
+        multiplier: NDArray[np.bool_],
+        threads: int,
     ) -> None:
         self.negative = -1
         if symmetric:
@@ -66,7 +73,7 @@ class Factor:
         self._solver = solver
 
     def _symmetric(
-        self, matrix: Any, node: Ints, multiplier: NDArray[np.bool_], threads: int
+        self, matrix: Sparse, node: Ints, multiplier: NDArray[np.bool_], threads: int
     ) -> None:
         upper = sp.triu(matrix).tocsc()
         upper.sort_indices()
@@ -84,7 +91,7 @@ class Factor:
         return self._solver.solve(rhs)
 
 
-def _is_null(matrix: Any, mode: Any) -> bool:
+def _is_null(matrix: Sparse, mode: Floats) -> bool:
     """Whether a symmetric matrix maps a vector to rounding errors only."""
     if mode is None:
         return True

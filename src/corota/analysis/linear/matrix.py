@@ -11,7 +11,7 @@ What all processes compute, such as point masses, is added by one of them.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -20,7 +20,9 @@ from corota.analysis.parallel.communicator import ALONE
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota._core import Problem
     from corota.analysis.linear.solvers import LinearSolver
+    from corota.analysis.linear.types import Index, Sparse
     from corota.analysis.parallel.communicator import Communicator
 
     Floats = NDArray[np.float64]
@@ -51,8 +53,8 @@ class SymmetricPattern:
 
     def __init__(
         self,
-        indptr: NDArray[Any],
-        indices: NDArray[Any],
+        indptr: Index,
+        indices: Index,
         node: Ints,
         after: Ints | None = None,
         communicator: Communicator = ALONE,
@@ -155,19 +157,20 @@ class SymmetricPattern:
         np.maximum.at(found, self.columns, np.abs(values))
         return self.communicator.largest(found)
 
-    def _upper(self, values: Floats) -> Any:
+    def _upper(self, values: Floats) -> Sparse:
         """The upper triangle, scipy CSC."""
         import scipy.sparse as sp
 
         entries = (values, self.indices.astype(np.int32), self.indptr.astype(np.int32))
         return sp.csc_array(entries, shape=(self.n, self.n))
 
-    def full(self, values: Floats) -> Any:
+    def full(self, values: Floats) -> Sparse:
         """Both triangles of the sum, scipy sparse, on every process."""
         import scipy.sparse as sp
 
         upper = self.whole._upper(self.gathered(values))
-        return upper + sp.triu(upper, 1).T
+        both: Sparse = upper + sp.triu(upper, 1).T
+        return both
 
     def multiply(self, values: Floats, x: Floats) -> Floats:
         """Product with a vector."""
@@ -220,7 +223,7 @@ class AssembledPattern(SymmetricPattern):
     communicator : Communicator
     """
 
-    def __init__(self, core: Any, communicator: Communicator = ALONE) -> None:
+    def __init__(self, core: Problem, communicator: Communicator = ALONE) -> None:
         node = core.node_of_dof.astype(np.int64)
         super().__init__(core.indptr, core.indices, node, communicator=communicator)
         self._core = core

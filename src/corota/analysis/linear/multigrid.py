@@ -7,7 +7,7 @@ P. Vanek, J. Mandel and M. Brezina, Computing 56 (1996) 179-196.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,7 +16,9 @@ from corota.errors import UnsupportedError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+    from petsc4py import PETSc
 
+    from corota.analysis.linear.types import Index
     from corota.analysis.parallel.communicator import Communicator
 
     Floats = NDArray[np.float64]
@@ -63,10 +65,10 @@ class PetscMultigrid(Petsc):
 
     def analyze(
         self,
-        indptr: NDArray[Any],
-        indices: NDArray[Any],
-        node_of_dof: NDArray[Any],
-        after: NDArray[Any] | None = None,
+        indptr: Index,
+        indices: Index,
+        node_of_dof: Index,
+        after: Index | None = None,
     ) -> None:
         """Keep the pattern (see `LinearSolver`).
 
@@ -98,7 +100,7 @@ class PetscMultigrid(Petsc):
         except self._petsc.Error as error:
             raise UnsupportedError(f"PETSc could not set up the multigrid: {error}") from None
 
-    def _new_matrix(self, shape: tuple[int, int], csr: tuple[Any, Any, Any]) -> Any:
+    def _new_matrix(self, shape: tuple[int, int], csr: tuple[Index, Index, Floats]) -> PETSc.Mat:
         matrix = self._petsc.Mat().createAIJ(
             (shape, shape), bsize=self._block, csr=csr, comm=self._handle
         )
@@ -129,7 +131,7 @@ class PetscMultigrid(Petsc):
         for held in (space, *vectors):
             held.destroy()
 
-    def _new_solver(self, share: int) -> Any:
+    def _new_solver(self, share: int) -> PETSc.KSP:
         solver = self._petsc.KSP().create(self._handle)
         solver.setType("cg")
         solver.setTolerances(rtol=TOLERANCE, atol=0.0, max_it=MOST)
@@ -139,7 +141,7 @@ class PetscMultigrid(Petsc):
         solver.setFromOptions()
         return solver
 
-    def _solve_vector(self, right: Any, left: Any) -> None:
+    def _solve_vector(self, right: PETSc.Vec, left: PETSc.Vec) -> None:
         solver = self._solver
         solver.solve(right, left)
         self.iterations = solver.getIterationNumber()

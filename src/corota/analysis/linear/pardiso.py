@@ -7,7 +7,7 @@ import ctypes
 import ctypes.util
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from corota.errors import ResourceError, SingularError, UnsupportedError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from corota.analysis.linear.types import Index
 
     Inertia = tuple[int, int, int]
     Floats = NDArray[np.float64]
@@ -76,10 +78,10 @@ class Pardiso:
 
     def analyze(
         self,
-        indptr: NDArray[Any],
-        indices: NDArray[Any],
-        node_of_dof: NDArray[Any],
-        after: NDArray[Any] | None = None,
+        indptr: Index,
+        indices: Index,
+        node_of_dof: Index,
+        after: Index | None = None,
     ) -> None:
         """Order and prepare for a pattern (see `LinearSolver`); the nodes are not used."""
         import scipy.sparse as sp
@@ -159,10 +161,10 @@ class Pardiso:
             raise SingularError("matrix is singular: the residual of the solution is too large")
 
     def _call(self, phase: int, b: Floats | None = None, x: Floats | None = None) -> None:
-        def integer(value: int) -> Any:
+        def integer(value: int) -> object:
             return ctypes.byref(ctypes.c_int32(value))
 
-        def array(values: NDArray[Any] | None) -> Any:
+        def array(values: Index | Floats | None) -> ctypes.c_void_p | None:
             return None if values is None else ctypes.c_void_p(values.ctypes.data)
 
         previous = self._mkl.MKL_Set_Num_Threads_Local(self._threads)

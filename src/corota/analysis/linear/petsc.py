@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,8 +14,12 @@ from corota.analysis.parallel.mpi import processes
 from corota.errors import ResourceError, SingularError, UnsupportedError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from types import ModuleType
 
+    from numpy.typing import NDArray
+    from petsc4py import PETSc
+
+    from corota.analysis.linear.types import Index
     from corota.analysis.parallel.communicator import Communicator
 
     Inertia = tuple[int, int, int]
@@ -52,7 +56,7 @@ _STEPS = 3
 _MOST = 6
 
 
-def load_petsc() -> Any:
+def load_petsc() -> ModuleType:
     """The module ``petsc4py.PETSc``, initialized.
 
     Raises
@@ -103,11 +107,11 @@ class Petsc:
         self.communicator = communicator
         self._symmetric = symmetric
         self._n = 0
-        self._matrix: Any = None
-        self._solver: Any = None
+        self._matrix: PETSc.Mat = None
+        self._solver: PETSc.KSP = None
 
     @property
-    def _handle(self) -> Any:
+    def _handle(self) -> PETSc.Comm:
         """Communicator of PETSc's objects."""
         if self.communicator.size > 1:
             return self.communicator.handle  # type: ignore[attr-defined]
@@ -115,10 +119,10 @@ class Petsc:
 
     def analyze(
         self,
-        indptr: NDArray[Any],
-        indices: NDArray[Any],
-        node_of_dof: NDArray[Any],
-        after: NDArray[Any] | None = None,
+        indptr: Index,
+        indices: Index,
+        node_of_dof: Index,
+        after: Index | None = None,
     ) -> None:
         """Keep the pattern (see `LinearSolver`); MUMPS orders it with the first factorization."""
         self._release()
@@ -180,13 +184,13 @@ class Petsc:
             self._matrix.setValuesCSR(*csr)
             self._matrix.assemble()
 
-    def _new_matrix(self, shape: tuple[int, int], csr: tuple[Any, Any, Any]) -> Any:
+    def _new_matrix(self, shape: tuple[int, int], csr: tuple[Index, Index, Floats]) -> PETSc.Mat:
         make = self._petsc.Mat()
         make = make.createSBAIJ if self._symmetric else make.createAIJ
         block = (1,) if self._symmetric else ()
         return make((shape, shape), *block, csr=csr, comm=self._handle)
 
-    def _factorized(self) -> Any:
+    def _factorized(self) -> PETSc.Mat:
         """The factor of the matrix as it stands, with as much memory as pivoting needs."""
         for share in _SHARES:
             if self._solver is None:
@@ -212,7 +216,7 @@ class Petsc:
             raise ResourceError("MUMPS has not enough memory for the factorization")
         raise SingularError(f"MUMPS stopped with error {error}")
 
-    def _new_solver(self, share: int) -> Any:
+    def _new_solver(self, share: int) -> PETSc.KSP:
         solver = self._petsc.KSP().create(self._handle)
         solver.setType("preonly")
         solver.setOperators(self._matrix)
@@ -284,7 +288,7 @@ class Petsc:
         if energy <= _SINGULAR_BELOW * norm:
             raise self._singular("a motion costs no energy", [motion])
 
-    def _null_vector(self, factor: Any, number: int) -> Floats:
+    def _null_vector(self, factor: PETSc.Mat, number: int) -> Floats:
         """Vector that a matrix with vanished pivots takes to zero, from 1 to their number."""
         factor.setMumpsIcntl(_NULL_SPACE, number)
         try:
@@ -314,7 +318,7 @@ class Petsc:
             found[:] = rows.whole(result)
         return x
 
-    def _solve_vector(self, right: Any, left: Any) -> None:
+    def _solve_vector(self, right: PETSc.Vec, left: PETSc.Vec) -> None:
         try:
             self._solver.solve(right, left)
         except self._petsc.Error as caught:

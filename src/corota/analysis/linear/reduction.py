@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,8 +13,12 @@ from corota.analysis.linear.matrix import SymmetricPattern
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.linear.types import Sparse
+
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+    #: Key, entry, two places of numbers, and factor of each product.
+    Products = tuple[Ints, Ints, Ints, Ints, Floats]
 
 
 @dataclass
@@ -29,7 +33,7 @@ class Rows:
     """
 
     dofs: Ints
-    matrix: Any
+    matrix: Sparse
 
 
 class Layout:
@@ -58,12 +62,12 @@ class Layout:
         self.at[inside] = 1 + np.arange(len(matrix.data))
         self.column = renumber[self.column]
 
-    def _keys(self, matrix: Any) -> Ints:
+    def _keys(self, matrix: Sparse) -> Ints:
         row = np.repeat(np.arange(matrix.shape[0], dtype=np.int64), np.diff(matrix.indptr))
         out: Ints = row * self.n + matrix.indices
         return out
 
-    def numbers(self, matrix: Any) -> Floats:
+    def numbers(self, matrix: Sparse) -> Floats:
         """Numbers of a matrix with this pattern or a part of it."""
         matrix = matrix.tocsr()
         matrix.sort_indices()
@@ -163,7 +167,7 @@ class Reduction:
         self.terms = self._terms(raw[0], unique, some)
         self.geometric_terms = self._terms(raw[1], unique, None)
 
-    def _products(self, layout: Layout, i: Ints, j: Ints, m: int) -> tuple[Any, ...]:
+    def _products(self, layout: Layout, i: Ints, j: Ints, m: int) -> Products:
         entry, a, b, one, two = layout.expand(i, j)
         diagonal = (i == j)[entry]
         keep = (a >= 0) & (b >= 0) & ~(diagonal & (a > b))
@@ -171,7 +175,7 @@ class Reduction:
         factor = np.where((a == b) & ~diagonal[keep], 2.0, 1.0)
         return np.maximum(a, b) * m + np.minimum(a, b), entry, one, two, factor
 
-    def _terms(self, raw: tuple[Any, ...], unique: Ints, chosen: Ints | None) -> Terms:
+    def _terms(self, raw: Products, unique: Ints, chosen: Ints | None) -> Terms:
         key, entry, one, two, factor = raw
         order = np.argsort(key, kind="stable")
         key = key[order]
@@ -180,7 +184,9 @@ class Reduction:
         target = np.searchsorted(unique, key[first])
         return Terms(entry, one[order], two[order], factor[order], target, first)
 
-    def reduce(self, values: Floats, turned: Rows, g: Any, geometric_stiffness: Floats) -> Floats:
+    def reduce(
+        self, values: Floats, turned: Rows, g: Sparse, geometric_stiffness: Floats
+    ) -> Floats:
         """Values of the reduced upper triangle."""
         out = self.pattern.zeros()
         out[self.plain_target] = values[self.plain]
@@ -189,7 +195,7 @@ class Reduction:
             self.geometric_terms.add(out, geometric_stiffness, self.tied.numbers(g))
         return out
 
-    def whole(self, rows: Rows) -> Any:
+    def whole(self, rows: Rows) -> Sparse:
         """All dofs by the unknowns, scipy CSC: the rows given, those of the identity elsewhere."""
         import scipy.sparse as sp
 
@@ -199,9 +205,12 @@ class Reduction:
             (np.ones(len(rows.dofs)), (rows.dofs, np.arange(len(rows.dofs)))),
             shape=(self.n, len(rows.dofs)),
         )
-        return (sp.diags_array(one) + put @ rows.matrix).tocsc()[:, self.free]
+        found: Sparse = (sp.diags_array(one) + put @ rows.matrix).tocsc()[:, self.free]
+        return found
 
-    def reduce_full(self, matrix: Any, turned: Rows, g: Any, geometric_stiffness: Floats) -> Any:
+    def reduce_full(
+        self, matrix: Sparse, turned: Rows, g: Sparse, geometric_stiffness: Floats
+    ) -> Sparse:
         """The same for a full matrix, scipy CSC."""
         import scipy.sparse as sp
 

@@ -15,10 +15,11 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.linear.types import Index
     from corota.analysis.parallel.communicator import Communicator
 
     Floats = NDArray[np.float64]
-    Ints = NDArray[np.integer[Any]]
+    Ints = Index
 
 
 class Rows:
@@ -51,9 +52,9 @@ class Rows:
     def __init__(
         self,
         communicator: Communicator,
-        indptr: NDArray[Any],
-        indices: NDArray[Any],
-        node: NDArray[Any],
+        indptr: Index,
+        indices: Index,
+        node: Index,
         triangle: bool,
         both: bool = False,
     ) -> None:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
@@ -412,7 +412,7 @@ class SaddlePointSystem:
         with linear.timed("factor"):
             return self._by_lu(data, rest, b), -1
 
-    def _is_null(self, data: Floats, mode: Any) -> bool:
+    def _is_null(self, data: Floats, mode: Floats) -> bool:
         """Whether the matrix maps a vector to rounding errors only."""
         if mode is None:
             return True

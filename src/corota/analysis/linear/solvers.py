@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Linear solvers behind one interface of three methods, and the list of them.
 
-Any object with ``analyze``, ``factorize`` and ``solve`` as in `LinearSolver` can
+An object with ``analyze``, ``factorize`` and ``solve`` as in `LinearSolver` can
 be passed to the procedures; those of `SOLVERS` can also be requested by name.
 """
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.analysis.linear.types import Index
+
     Inertia = tuple[int, int, int]
     Floats = NDArray[np.float64]
 
@@ -36,10 +38,10 @@ class LinearSolver(Protocol):
 
     def analyze(
         self,
-        indptr: NDArray[Any],
-        indices: NDArray[Any],
-        node_of_dof: NDArray[Any],
-        after: NDArray[Any] | None = None,
+        indptr: Index,
+        indices: Index,
+        node_of_dof: Index,
+        after: Index | None = None,
     ) -> None:
         """Order and prepare for a pattern.
 
@@ -76,7 +78,7 @@ class LinearSolver(Protocol):
         ...
 
 
-def _index(values: NDArray[Any] | None, kind: type[np.generic]) -> NDArray[Any] | None:
+def _index(values: Index | None, kind: type[np.generic]) -> Index | None:
     return None if values is None else np.ascontiguousarray(values, dtype=kind)
 
 
@@ -113,10 +115,10 @@ class Multifrontal:
 
     def analyze(
         self,
-        indptr: NDArray[Any],
-        indices: NDArray[Any],
-        node_of_dof: NDArray[Any],
-        after: NDArray[Any] | None = None,
+        indptr: Index,
+        indices: Index,
+        node_of_dof: Index,
+        after: Index | None = None,
     ) -> None:
         """Order and prepare for a pattern (see `LinearSolver`)."""
         pattern = (
@@ -157,10 +159,10 @@ class SuperLU:
 
     def analyze(
         self,
-        indptr: NDArray[Any],
-        indices: NDArray[Any],
-        node_of_dof: NDArray[Any],
-        after: NDArray[Any] | None = None,
+        indptr: Index,
+        indices: Index,
+        node_of_dof: Index,
+        after: Index | None = None,
     ) -> None:
         """Keep the pattern; SuperLU computes an ordering with each factorization."""
         self._indptr = np.asarray(indptr, dtype=np.int32)

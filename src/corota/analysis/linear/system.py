@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.linear.matrix import SymmetricPattern
     from corota.analysis.linear.solvers import Inertia, LinearSolver
+    from corota.analysis.linear.types import Sparse
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -37,7 +38,7 @@ class LinearSystem:
 
     def __init__(self, solver: LinearSolver) -> None:
         self.solver = solver
-        self.last: Any = solver
+        self.last: LinearSolver | MaskedLu = solver
         self._timers: defaultdict[str, Timer] = defaultdict(Timer)
         self._lu = MaskedLu()
         self._pattern: SymmetricPattern | None = None
@@ -69,7 +70,7 @@ class LinearSystem:
         return inertia
 
     def factorize_unsymmetric(
-        self, matrix: Any, constrained: NDArray[np.bool_], node: Ints
+        self, matrix: Sparse, constrained: NDArray[np.bool_], node: Ints
     ) -> None:
         """Factorize a scipy CSC matrix with diagonal rows and columns of constrained unknowns.
 

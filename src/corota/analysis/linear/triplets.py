@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
+    import scipy.sparse as sp
     from numpy.typing import NDArray
+
+    from corota.analysis.linear.types import Index, Sparse
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -41,7 +44,7 @@ class Triplets:
         """Some of the entries."""
         return Triplets(self.rows[chosen], self.columns[chosen], self.values[chosen])
 
-    def matrix(self, n: int, m: int | None = None) -> Any:
+    def matrix(self, n: int, m: int | None = None) -> Sparse:
         """Sum of the entries, scipy CSR of shape (n, m)."""
         import scipy.sparse as sp  # takes longer to import than a small job to solve
 
@@ -49,13 +52,13 @@ class Triplets:
         return sp.coo_array((self.values, (self.rows, self.columns)), shape=shape).tocsr()
 
     @classmethod
-    def of(cls, matrix: Any) -> Triplets:
+    def of(cls, matrix: Sparse) -> Triplets:
         """Entries of a scipy sparse matrix."""
         found = matrix.tocoo()
         return cls(found.row.astype(np.int64), found.col.astype(np.int64), np.asarray(found.data))
 
     @classmethod
-    def halves(cls, matrix: Any) -> tuple[Triplets, Triplets]:
+    def halves(cls, matrix: Sparse) -> tuple[Triplets, Triplets]:
         """Upper triangle of the symmetric part of a matrix, and the skew part if there is one."""
         import scipy.sparse as sp
 
@@ -64,12 +67,12 @@ class Triplets:
         return even, odd.keep(np.abs(odd.values) > SKEW * size)
 
 
-def nonempty_columns(matrix: Any) -> Ints:
+def nonempty_columns(matrix: Sparse) -> Ints:
     """Columns of a scipy CSC matrix that have entries."""
     return np.flatnonzero(np.diff(matrix.indptr))
 
 
-def arrays_of(matrix: Any) -> list[Any]:
+def arrays_of(matrix: Sparse | sp.coo_array[np.float64]) -> list[Index | Floats]:
     """The arrays of a scipy sparse matrix: positions, then values."""
     coo = matrix.format == "coo"
     names = ("row", "col", "data") if coo else ("indptr", "indices", "data")

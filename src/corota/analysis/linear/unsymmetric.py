@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.linear.matrix import SymmetricPattern
+    from corota.analysis.linear.types import Index, Sparse
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -43,7 +44,7 @@ class FullMatrix:
         self.indptr = np.searchsorted(self._entries, n * np.arange(n + 1, dtype=np.int64))
         self.indices = self._entries % n
 
-    def build(self, values: Floats, rows: Ints, columns: Ints, more: Floats) -> Any:
+    def build(self, values: Floats, rows: Ints, columns: Ints, more: Floats) -> Sparse:
         """Add up entries `more` at (row, column) and a symmetric matrix; scipy CSC, sorted.
 
         Parameters
@@ -77,10 +78,11 @@ class MaskedLu:
 
     def __init__(self) -> None:
         self._solver = Multifrontal(symmetric=False)
-        self._indptr = self._indices = np.zeros(0, np.int64)
+        self._indptr: Index = np.zeros(0, np.int64)
+        self._indices: Index = self._indptr
         self._held = np.zeros(0, bool)
 
-    def factorize(self, matrix: Any, constrained: NDArray[np.bool_], node: Ints) -> None:
+    def factorize(self, matrix: Sparse, constrained: NDArray[np.bool_], node: Ints) -> None:
         """Factorize a scipy CSC matrix with diagonal rows and columns of prescribed dofs.
 
         Raises
@@ -106,7 +108,7 @@ class MaskedLu:
             self._held = constrained.copy()
         self._solver.factorize(data)
 
-    def _same(self, matrix: Any) -> bool:
+    def _same(self, matrix: Sparse) -> bool:
         return np.array_equal(matrix.indptr, self._indptr) and np.array_equal(
             matrix.indices, self._indices
         )
@@ -116,13 +118,13 @@ class MaskedLu:
         return self._solver.solve(rhs)
 
 
-def entries_of(matrix: Any) -> tuple[Ints, Ints]:
+def entries_of(matrix: Sparse) -> tuple[Index, Index]:
     """Rows and columns of the entries of a scipy CSC matrix."""
     counts = np.diff(matrix.indptr)
     return matrix.indices, np.repeat(np.arange(len(counts)), counts)
 
 
-def diagonal_of(matrix: Any) -> NDArray[np.bool_]:
+def diagonal_of(matrix: Sparse) -> NDArray[np.bool_]:
     """Which diagonal entries a scipy CSC matrix has a place for."""
     rows, columns = entries_of(matrix)
     has = np.zeros(matrix.shape[0], bool)

@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import contextlib
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
+    from corota.analysis.linear.types import Item, Kind
     from corota.results.frame import PointFields
 
 
@@ -36,11 +37,11 @@ class Communicator:
         """Whether this process adds contributions that all processes compute."""
         return self.rank == 0
 
-    def sum(self, values: NDArray[Any]) -> NDArray[Any]:
+    def sum(self, values: NDArray[Kind]) -> NDArray[Kind]:
         """Sum of the arrays of all processes, which have the same shape."""
         return values
 
-    def largest(self, values: NDArray[Any]) -> NDArray[Any]:
+    def largest(self, values: NDArray[Kind]) -> NDArray[Kind]:
         """Largest values of all processes, of arrays of the same shape."""
         return values
 
@@ -56,19 +57,19 @@ class Communicator:
         """Whether the flags of all processes are set."""
         return not self.any(not flag)
 
-    def broadcast(self, value: Any) -> Any:
+    def broadcast(self, value: Item) -> Item:
         """The value of process 0."""
         return value
 
-    def gather(self, value: Any) -> list[Any]:
+    def gather(self, value: Item) -> list[Item]:
         """Values of all processes on process 0; no values on the others."""
         return [value]
 
-    def exchange(self, parts: Sequence[Any]) -> list[Any]:
+    def exchange(self, parts: Sequence[Item]) -> list[Item]:
         """One value from each process, which gives one to each."""
         return list(parts)
 
-    def concatenate(self, values: NDArray[Any]) -> NDArray[Any]:
+    def concatenate(self, values: NDArray[Kind]) -> NDArray[Kind]:
         """The arrays of all processes one after the other, along the first axis."""
         return values
 

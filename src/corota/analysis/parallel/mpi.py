@@ -18,8 +18,12 @@ from corota.results.frame import PointFields
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from types import ModuleType
 
+    from mpi4py import MPI
     from numpy.typing import NDArray
+
+    from corota.analysis.linear.types import Item, Kind
 
 #: Time for which a process with an error waits for the others to come with theirs [s].
 PATIENCE = 5.0
@@ -49,7 +53,7 @@ def processes() -> Communicator:
 
 
 @lru_cache(maxsize=1)
-def _world(mpi: Any) -> Processes:
+def _world(mpi: ModuleType) -> Processes:
     """All processes; made once, because MPI has few communicators."""
     return Processes(mpi, mpi.COMM_WORLD)
 
@@ -66,20 +70,20 @@ class Processes(Communicator):
     world : mpi4py.MPI.Comm
     """
 
-    def __init__(self, mpi: Any, world: Any) -> None:
+    def __init__(self, mpi: ModuleType, world: MPI.Comm) -> None:
         self._mpi, self.handle = mpi, world.Dup()
         self._errors = world.Dup()
         # For messages of any length.
         self._objects = import_module("mpi4py.util.pkl5").Intracomm(world.Dup())
         self.rank, self.size = world.Get_rank(), world.Get_size()
 
-    def sum(self, values: NDArray[Any]) -> NDArray[Any]:
+    def sum(self, values: NDArray[Kind]) -> NDArray[Kind]:
         return self._reduced(values, self._mpi.SUM)
 
-    def largest(self, values: NDArray[Any]) -> NDArray[Any]:
+    def largest(self, values: NDArray[Kind]) -> NDArray[Kind]:
         return self._reduced(values, self._mpi.MAX)
 
-    def _reduced(self, values: NDArray[Any], operation: Any) -> NDArray[Any]:
+    def _reduced(self, values: NDArray[Kind], operation: MPI.Op) -> NDArray[Kind]:
         own = np.ascontiguousarray(values)
         out = np.empty_like(own)
         given, found = own.reshape(-1), out.reshape(-1)
@@ -95,17 +99,18 @@ class Processes(Communicator):
     def any(self, flag: bool) -> bool:
         return bool(self.handle.allreduce(bool(flag), self._mpi.LOR))
 
-    def broadcast(self, value: Any) -> Any:
-        return self.handle.bcast(value, 0)
-
-    def gather(self, value: Any) -> list[Any]:
-        return self._objects.gather(value, 0) or []
-
-    def exchange(self, parts: Sequence[Any]) -> list[Any]:
-        found: list[Any] = self._objects.alltoall(list(parts))
+    def broadcast(self, value: Item) -> Item:
+        found: Item = self.handle.bcast(value, 0)
         return found
 
-    def concatenate(self, values: NDArray[Any]) -> NDArray[Any]:
+    def gather(self, value: Item) -> list[Item]:
+        return self._objects.gather(value, 0) or []
+
+    def exchange(self, parts: Sequence[Item]) -> list[Item]:
+        found: list[Item] = self._objects.alltoall(list(parts))
+        return found
+
+    def concatenate(self, values: NDArray[Kind]) -> NDArray[Kind]:
         own = np.ascontiguousarray(values)
         counts = self.handle.allgather(own.size)
         out = np.empty(sum(counts), own.dtype)

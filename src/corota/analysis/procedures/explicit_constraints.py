@@ -13,7 +13,7 @@ couples few dofs and is factorized.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.equations import System
+    from corota.errors import Location
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
@@ -206,7 +207,7 @@ class ReducedMass(FreeMass):
             "increment, or an implicit scheme"
         )
 
-    def refuse_contact(self, nodes: Any, where: Any) -> None:
+    def refuse_contact(self, nodes: NDArray[np.int64], where: Location | None) -> None:
         """Refuse contact at nodes whose motion is coupled to that of others by mass.
 
         Raises

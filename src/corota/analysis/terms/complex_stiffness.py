@@ -22,6 +22,7 @@ from corota.model.viscoelastic import Viscoelastic
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.linearized import LinearMotion
     from corota.model.blocks import BlockOfCells
 
@@ -128,7 +129,7 @@ def _relaxes(block: BlockOfCells) -> bool:
     return isinstance(block.section.material, Viscoelastic)
 
 
-def relaxing_note(system: Any) -> str:
+def relaxing_note(system: NumberedModel) -> str:
     """What procedures without complex moduli say of viscoelastic materials, if there are any."""
     if not any(_relaxes(b) for b in system.blocks):
         return ""

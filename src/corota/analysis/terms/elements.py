@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota._core import Problem
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.conditions import Conditions
@@ -60,7 +61,7 @@ class Elements(Term):
         self.seen = time
         self.give_clock(self.system.core)
 
-    def give_clock(self, core: Any) -> None:
+    def give_clock(self, core: Problem) -> None:
         """Tell other elements the same time."""
         passed = max(self.seen - self.reached, 0.0) if self.passes else 0.0
         core.set_clock(passed, self.begun + self.seen, self.lasting)

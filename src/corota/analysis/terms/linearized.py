@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from corota.analysis.linear.factor import Factor
 from corota.analysis.linear.triplets import Triplets, nonempty_columns
@@ -29,9 +29,12 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.linear.coupling import Coupling
+    from corota.analysis.linear.types import Kind, Sparse
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+    #: Rows, columns and values.
+    Entries = tuple[Ints, Ints, Floats]
 
 #: Skew part of a stiffness, relative to its largest entry, that is rounding.
 SKEW = 1e-9
@@ -78,8 +81,8 @@ class Linearized:
         self.u = u.copy()
         self._load = load
         self._pressures: Any = None
-        self._hard: Any = None
-        self._normal: Any = None
+        self._hard: Sparse | None = None
+        self._normal: SuperLU | None = None
         loads = system.conditions.as_reached() if time is None else nullcontext()
         with loads, system.elements.unloading(u):
             self.at, coupling, self.states, self._laws = linearized_contact(
@@ -97,7 +100,7 @@ class Linearized:
         new = len(system.per_node) + np.arange(self.n_multipliers)
         self.node = np.concatenate([system.node_of_dof[self.free], new])
         self.multiplier = np.arange(self.n) >= self.nf
-        self.stiffness = self._stiffness(coupling)
+        self.stiffness: Any = self._stiffness(coupling)
         k = self.sub(self.stiffness)
         size = abs(k).max() if k.nnz else 0.0
         self.symmetric = not k.nnz or abs(k - k.T).max() <= SKEW * size
@@ -107,7 +110,7 @@ class Linearized:
         """Residual with what dependent dofs pass on to their masters, shape (n_dofs,)."""
         return self.link.gather(self.at.residual)
 
-    def _stiffness(self, coupling: Coupling) -> Any:
+    def _stiffness(self, coupling: Coupling) -> Sparse:
         at, more = self.at, coupling.geometric_stiffness
         if at.load_stiffness is not None:
             rows, columns, values = at.load_stiffness
@@ -135,9 +138,9 @@ class Linearized:
     def reduce(
         self,
         values: Floats | None = None,
-        triplets: Any = None,
+        triplets: Entries | None = None,
         residual: Floats | None = None,
-    ) -> Any:
+    ) -> Sparse:
         """A matrix of the independent dofs.
 
         Parameters
@@ -151,7 +154,7 @@ class Linearized:
         """
         system = self.system
         n = system.n_dofs
-        matrix = sp.csc_array((n, n))
+        matrix: Sparse = sp.csc_array((n, n))
         if values is not None:
             matrix = system.pattern.full(values)
         if triplets is not None:
@@ -160,7 +163,7 @@ class Linearized:
         force = np.zeros(n) if residual is None else residual
         return self.link.reduce_full(matrix.tocsr(), force).tocsc()
 
-    def padded(self, matrix: Any) -> Any:
+    def padded(self, matrix: Sparse) -> Any:
         """A matrix of the independent dofs with empty rows and columns of the multipliers."""
         if not self.n_multipliers:
             return matrix
@@ -185,7 +188,7 @@ class Linearized:
         out: Floats = padded[self.active]
         return out
 
-    def restrict(self, u: Any) -> Any:
+    def restrict(self, u: NDArray[Kind]) -> NDArray[Kind]:
         """Changes of all dofs as those of all unknowns; multipliers stay."""
         return np.concatenate([u[self.free], np.zeros((self.n_multipliers, *u.shape[1:]))])
 
@@ -227,13 +230,13 @@ class Linearized:
         dofs = z[: self.nf]
         return np.array(self.link.expand(dofs))
 
-    def from_active(self, x: Any) -> Any:
+    def from_active(self, x: NDArray[Kind]) -> NDArray[Kind]:
         """All unknowns from the active ones, the others zero."""
         z = np.zeros((self.n, *x.shape[1:]), x.dtype)
         z[self.active] = x
         return z
 
-    def factor(self, matrix: Any, symmetric: bool) -> Factor:
+    def factor(self, matrix: Sparse, symmetric: bool) -> Factor:
         """Factorize a matrix of the active unknowns.
 
         Raises
@@ -287,12 +290,12 @@ class LinearMotion(Linearized):
         self.kind = kind
         self.inertia = Inertia(system, kind)
         self.mass_values = self.inertia.tangent(np.zeros_like(u) if system.about_linear else u)
-        self.mass = self.padded(self.reduce(self.mass_values))
+        self.mass: Any = self.padded(self.reduce(self.mass_values))
         self.turns = False
         system.conditions.reset_mass()
-        self._damping: dict[tuple[float, float, bool], Any] = {}
+        self._damping: dict[tuple[float, float, bool], Sparse] = {}
 
-    def damping(self, rayleigh: tuple[float, float] = (0.0, 0.0)) -> Any:
+    def damping(self, rayleigh: tuple[float, float] = (0.0, 0.0)) -> Sparse:
         """Dashpots, damping of materials and of the whole model, and Coriolis forces if it `turns`.
 
         Parameters

@@ -9,7 +9,7 @@ elements' masses (the conditions of Khenous, Laborde & Renard 2008).
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from corota.mesh.parts import part_of_cells
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from corota.analysis.numbered_model import NumberedModel
 
     Floats = NDArray[np.float64]
 
@@ -29,7 +31,7 @@ HOLDS = 1e-9
 SMALL = 0.01
 
 
-def set_moving_mass(system: Any, kind: str, massless: NDArray[np.bool_] | None) -> str:
+def set_moving_mass(system: NumberedModel, kind: str, massless: NDArray[np.bool_] | None) -> str:
     """Set the massless nodes in the core, and the densities of the others.
 
     Parameters
@@ -81,7 +83,7 @@ def set_moving_mass(system: Any, kind: str, massless: NDArray[np.bool_] | None) 
     )
 
 
-def _all_skin(system: Any, massless: NDArray[np.bool_]) -> str:
+def _all_skin(system: NumberedModel, massless: NDArray[np.bool_]) -> str:
     """A remark where elements consist of contact nodes alone: no other node can take their mass."""
     mesh = system.model.mesh
     count = sum(int(massless[cells.nodes].all(axis=1).sum()) for cells in mesh.cells)
@@ -94,7 +96,7 @@ def _all_skin(system: Any, massless: NDArray[np.bool_]) -> str:
     )
 
 
-def _moments(system: Any, kind: str) -> Floats:
+def _moments(system: NumberedModel, kind: str) -> Floats:
     """Mass, its moments x and y and polar moment of inertia of each element, shape (n, 4).
 
     About the middle of the nodes, lengths over the size of the model.

@@ -14,7 +14,7 @@ mean rotation matrix and the mean positions (see docs/dynamics.md).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -196,7 +196,7 @@ def _change(block: _Block, begin: Floats, end: Floats, v: Floats, dt: float) -> 
     return local
 
 
-def _skew(v: Floats) -> Any:
+def _skew(v: Floats) -> Floats:
     """Vectors rotated by a right angle, shape (..., 2)."""
     return np.stack([-v[..., 1], v[..., 0]], axis=-1)
 
