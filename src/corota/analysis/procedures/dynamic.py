@@ -405,17 +405,17 @@ def _local_error(
     v = system.by_node(end.v)[:, :2]
     rigid = rigid_rates(x[moves], change[moves])
     other = change[moves] - rigid
-    travel = x[counts] - reference[counts]
-    travel -= travel.mean(axis=0)
-    speed = v[counts] - v[counts].mean(axis=0)
+    travel, speed = x[counts] - reference[counts], v[counts]
+    least = REST * _largest(reference[counts] - reference[counts].mean(axis=0))
+    if least > 0.0:  # nodes at one place move against the ground
+        travel, speed = travel - travel.mean(axis=0), speed - speed.mean(axis=0)
     strain = deformation(reference[counts], x[counts], system.nlgeom)
     rate = v[counts] - rigid_rates(x[counts], v[counts])
-    least = REST * _largest(reference[counts] - reference[counts].mean(axis=0))
     worst = 0.0
     pairs = ((rigid, travel, speed), (other, strain, rate))
     for wrong, moved, moving in pairs:
         size = max(_largest(moved), dt * _largest(moving), least)
-        worst = max(worst, _largest(wrong) / size)
+        worst = max(worst, _largest(wrong) / size if size else 0.0)
     # No increment is short enough for the relative error of a motion out of rest.
     return abs(beta - 1.0 / 6.0) * dt * dt * worst / step.error_tolerance
 

@@ -14,11 +14,13 @@ from corota.io.deck import numerals
 from corota.io.deck.drafts import (
     AttachedDraft,
     Draft,
+    EmbeddedDraft,
     GeneralDraft,
     ImperfectionDraft,
     InitialDraft,
     Instance,
     InteractionDraft,
+    MassScalingDraft,
     MaterialDraft,
     NonstructuralDraft,
     PairDraft,
@@ -89,6 +91,10 @@ class Deck:
     thicknesses: list[Draft] = field(default_factory=list)
     nonstructural: list[NonstructuralDraft] = field(default_factory=list)
     imperfections: list[ImperfectionDraft] = field(default_factory=list)
+    embedded: list[EmbeddedDraft] = field(default_factory=list)
+    mass_scalings: list[MassScalingDraft] = field(default_factory=list)
+    #: Amplitudes whose values are those of the loads.
+    absolute: set[str] = field(default_factory=set)
     velocities: list[Draft] = field(default_factory=list)
     initial: list[InitialDraft] = field(default_factory=list)
     ties: list[TieDraft] = field(default_factory=list)

@@ -344,6 +344,28 @@ class NonstructuralDraft:
 
 
 @dataclass(eq=False, repr=False)
+class EmbeddedDraft:
+    """One ``*EMBEDDED ELEMENT``: sets of elements whose nodes follow those of a host."""
+
+    card: Card
+    host: str
+    targets: list[Draft] = field(default_factory=list)
+
+
+@dataclass(eq=False, repr=False)
+class MassScalingDraft:
+    """One ``*FIXED MASS SCALING``: a factor of the mass, or an increment that is to be stable."""
+
+    card: Card
+    elset: str
+    factor: float
+    increment: float
+    kind: str
+    #: Step that it stands in, from 1.
+    step: int
+
+
+@dataclass(eq=False, repr=False)
 class InteractionDraft:
     """One ``*SURFACE INTERACTION`` with the cards below it.
 
@@ -453,6 +475,8 @@ class LineDraft:
     fiber: float = 0.0
     rows: list[Row] = field(default_factory=list)
     height: float = 0.0
+    #: Shear modulus times shear area, 0 where they follow from shape and material.
+    shear_stiffness: float = 0.0
 
 
 @dataclass(eq=False, repr=False)
@@ -495,6 +519,7 @@ __all__ = [
     "AttachedDraft",
     "Draft",
     "ElementBlock",
+    "EmbeddedDraft",
     "Entry",
     "GeneralDraft",
     "ImperfectionDraft",
@@ -502,6 +527,7 @@ __all__ = [
     "Instance",
     "InteractionDraft",
     "LineDraft",
+    "MassScalingDraft",
     "MaterialDraft",
     "NamedSet",
     "NodeBlock",
@@ -510,6 +536,7 @@ __all__ = [
     "PretensionDraft",
     "Scope",
     "SectionDraft",
+    "StartDraft",
     "StepDraft",
     "Surface",
     "SurfaceRow",

@@ -132,7 +132,7 @@ DRILLING = tuple(name for name in OWN if elements.find(name).drilling)
 LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3, "T2D2H": 2, "T3D2H": 2, "R2D2": 2}
 
 #: Point masses, rotary inertias, dashpots and gaps, with their number of nodes.
-ATTACHED = {"MASS": 1, "ROTARYI": 1, "DASHPOTA": 2, "GAPUNI": 2}
+ATTACHED = {"MASS": 1, "ROTARYI": 1, "DASHPOTA": 2, "DASHPOT1": 1, "GAPUNI": 2}
 
 
 @dataclass(frozen=True)
@@ -163,10 +163,7 @@ UNSUPPORTED_ELEMENTS: dict[str, str] = {
     **dict.fromkeys(
         ("GAPCYL", "GAPSPHER"), "of gaps this version has GAPUNI; use that or *CONTACT PAIR"
     ),
-    **dict.fromkeys(
-        ("DASHPOT1", "DASHPOT2"),
-        "of dashpots this version has DASHPOTA",
-    ),
+    "DASHPOT2": "of dashpots this version has DASHPOTA, and DASHPOT1 to the ground",
 }
 
 #: Families of elements by the beginning of their names, and what to do instead.

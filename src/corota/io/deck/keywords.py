@@ -169,6 +169,7 @@ _TABLE: dict[str, Keyword] = {
         "POISSON LUMP ROTARYINERTIA ZERO",
         place="model",
     ),
+    "TRANSVERSE SHEAR STIFFNESS": Keyword(card("lines.shear_stiffness"), place="model"),
     "SPRING": Keyword(card("lines.spring"), "ELSET NONLINEAR", place="model"),
     "ORIENTATION": Keyword(
         card("material.orientation"), "NAME SYSTEM", "DEFINITION", place="model"
@@ -200,6 +201,12 @@ _TABLE: dict[str, Keyword] = {
         "SOLVER RELATIVETOABSOLUTE HAFTOL HALFINCSCALEFACTOR INITIAL IMPACT SCALEFACTOR "
         "ELEMENTBYELEMENT INCREMENTATION ADIABATIC IMPROVEDDTMETHOD FIXEDTIMEINCREMENTATION",
     ),
+    **{
+        f"{name} MASS SCALING": Keyword(
+            card("mass_scaling.mass_scaling"), "ELSET FACTOR DT TYPE", "FREQUENCY NUMBERINTERVAL"
+        )
+        for name in ("FIXED", "VARIABLE")
+    },
     "COMPLEX FREQUENCY": Keyword(card("dynamic.complex_frequency"), "CORIOLIS", "SOLVER STORAGE"),
     "FREQUENCY": Keyword(
         card("dynamic.frequency"),
@@ -220,7 +227,9 @@ _TABLE: dict[str, Keyword] = {
     ),
     "DASHPOT": Keyword(card("attachments.dashpot"), "ELSET", place="model"),
     "GAP": Keyword(card("attachments.gap"), "ELSET", place="model"),
-    "INITIAL CONDITIONS": Keyword(card("dynamic.initial_conditions"), "TYPE", place="model"),
+    "INITIAL CONDITIONS": Keyword(
+        card("dynamic.initial_conditions"), "TYPE", "VARIABLE", place="model"
+    ),
     "EQUATION": Keyword(card("tie.equation"), place="model"),
     "MPC": Keyword(card("tie.mpc"), place="model"),
     "RIGID BODY": Keyword(
@@ -240,6 +249,12 @@ _TABLE: dict[str, Keyword] = {
     ),
     "PRE-TENSION SECTION": Keyword(
         card("pretension.pretension"), "SURFACE ELEMENT NODE", "NAME", place="model"
+    ),
+    "EMBEDDED ELEMENT": Keyword(
+        card("embedded.embedded_element"),
+        "HOSTELSET EXTERIORTOLERANCE",
+        "ROUNDOFFTOLERANCE ABSOLUTEEXTERIORTOLERANCE",
+        place="model",
     ),
     "TRANSFORM": Keyword(card("tie.transform"), "NSET TYPE", place="model"),
     "CONTACT PAIR": Keyword(

@@ -18,6 +18,7 @@ IGNORED: dict[str, str] = {
     "PRINT": "it controls the message file",
     "FILEFORMAT": "it controls the result file of another program",
     "USERSUBROUTINE": "no user subroutine is called",
+    "FIELD": "no data depend on field variables",
     "SOLUTIONTECHNIQUE": "Newton's method has the exact tangent",
     "USEROUTPUTVARIABLES": "no user subroutine is called",
     "VISCOSITY": "it belongs to fluids",
@@ -76,10 +77,7 @@ UNSUPPORTED: dict[str, str] = {
     "SURFACESMOOTHING": "give round rigid surfaces by *SURFACE, TYPE=SEGMENTS with CIRCL",
     "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
     **dict.fromkeys(
-        (
-            "EMBEDDEDELEMENT",
-            "CYCLICSYMMETRYMODEL",
-        ),
+        ("CYCLICSYMMETRYMODEL",),
         _MPC,
     ),
     **dict.fromkeys(
@@ -146,9 +144,6 @@ UNSUPPORTED: dict[str, str] = {
     "COHESIVEBEHAVIOR": "surfaces with adhesion are not part of this version; use *TIE",
     "GEOSTATIC": "use *STATIC with *INITIAL CONDITIONS, TYPE=STRESS",
     "SOILS": "pore pressure is not part of this version; use *STATIC",
-    "FIXEDMASSSCALING": "there is no mass scaling: the stable increment is found automatically",
-    "VARIABLEMASSSCALING": "there is no mass scaling: the stable increment is found automatically",
-    "FIELD": "fields are not part of this version; give temperatures by *TEMPERATURE",
     "INERTIARELIEF": "fix the body by *BOUNDARY in three dofs",
     "BEAMSECTIONGENERATE": "give the numbers by *BEAM GENERAL SECTION",
     "FASTENER": "use *MPC or *COUPLING",

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
@@ -93,7 +94,29 @@ class LoadBuilder:
         if draft.kind in ("volume", "line"):
             return list(self._volume_force(draft))
         load = self._load(draft)
+        scaled = isinstance(load, BodyForce) and (self.targets.mass_factor != 1.0).any()
+        if scaled:
+            return list(self._weights(draft, cast("BodyForce", load)))
         return [] if load is None else [load]
+
+    def _weights(self, draft: Draft, load: BodyForce) -> Iterator[Load]:
+        """Gravity of cells with a scaled mass: their weight is that of the mass before."""
+        if load.kind != "gravity":
+            self.deck.row_error(
+                draft.card,
+                draft.row,
+                1,
+                "a centrifugal load of elements with a scaled mass is not part of this version",
+                "scale the density itself, or leave the mass scaling out",
+            )
+            return
+        cells = cells_of(self.mesh, load.cells)
+        factor, masses = self.targets.mass_factor[cells], load.masses
+        for value in distinct(factor).tolist():
+            mine = cells[factor == value]
+            size = tuple(v / value for v in load.value)
+            yield replace(load, cells=mine, value=size, masses=masses)
+            masses = np.zeros(0, np.int64)
 
     def _shear(self, draft: Draft) -> Iterator[Load]:
         """Shear along the edges of a surface, towards a direction."""

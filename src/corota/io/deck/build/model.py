@@ -29,12 +29,14 @@ if TYPE_CHECKING:
 
 # Parts that few decks have.
 add_nonstructural = lazy("corota.io.deck.build.nonstructural:add_nonstructural")
+add_embedded = lazy("corota.io.deck.cards.embedded:add_embedded")
 base_supports = lazy("corota.io.deck.build.base_motion:base_supports")
 build_attachments = lazy("corota.io.deck.cards.attachments:build_attachments")
 build_contacts = lazy("corota.io.deck.build.contact:build_contacts")
 build_imperfections = lazy("corota.io.deck.cards.imperfection:build_imperfections")
 build_initial = lazy("corota.io.deck.cards.thermal:build_initial")
 build_tie = lazy("corota.io.deck.build.ties:build_tie")
+scale_masses = lazy("corota.io.deck.build.mass_scaling:scale_masses")
 pretension_builder = lazy("corota.io.deck.build.pretension:PretensionBuilder")
 
 
@@ -70,6 +72,14 @@ class ModelBuilder:
         model, deck = self.model, self.deck
         if deck.nonstructural:
             add_nonstructural(targets)
+        if deck.mass_scalings:
+            try:
+                targets.mass_factor = scale_masses(targets)
+            except InputError as error:
+                card = deck.mass_scalings[0].card
+                deck.error(card, card.where, error.message)
+        if deck.embedded:
+            add_embedded(targets)
         for tie in deck.ties:
             for view in views_in(self.meshes.views, deck, tie.card.scope):
                 targets.at = view
@@ -95,7 +105,9 @@ class ModelBuilder:
             nodes = targets.nodes(item)
             if nodes is not None:
                 model.velocities.append(
-                    InitialVelocity(nodes, item.value, item.index, item.row.where)
+                    InitialVelocity(
+                        nodes, item.value, None if item.index < 0 else item.index, item.row.where
+                    )
                 )
         if deck.initial:
             build_initial(deck, model, targets.nodes, targets.cells_of)

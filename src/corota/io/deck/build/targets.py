@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import Draft, TieDraft
-    from corota.mesh.data import Ints
+    from corota.mesh.data import Floats, Ints
 
 
 class Targets:
@@ -46,6 +46,8 @@ class Targets:
         self.sets = Sets(meshes, self.mesh)
         self.at = meshes.views[0]
         self.rotating = np.zeros(self.mesh.n_nodes, bool)
+        #: Factor of the mass of each cell by mass scaling, which leaves its weight.
+        self.mass_factor: Floats = np.ones(self.mesh.n_cells)
         #: Keys of the names of node sets that were looked up.
         self.used: set[str] = set()
         self.twins: tuple[Ints, Ints] = (np.zeros(0, np.int64), np.zeros(0, np.int64))
@@ -106,6 +108,17 @@ class Targets:
             )
             draft.amplitude = ""
             return None
+        if key(draft.amplitude) in self.deck.absolute:
+            if draft.kind not in ("fixed", "force", "pressure", "surface pressure"):
+                self.deck.error(
+                    draft.card,
+                    draft.card.at("AMPLITUDE"),
+                    f"amplitude {draft.amplitude} has VALUE=ABSOLUTE, which fits one number: "
+                    "supports, forces and pressures",
+                    hint="give the load its size and the amplitude VALUE=RELATIVE",
+                )
+                return None
+            draft.value = (1.0, *draft.value[1:])
         return found.name
 
     def cells_of(self, draft: Draft) -> Elements | None:

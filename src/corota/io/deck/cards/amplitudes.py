@@ -36,13 +36,7 @@ def amplitude(deck: Deck, card: Card) -> None:
     kinds = ("TABULAR", "EQUALLYSPACED", "SMOOTHSTEP", *ENDLESS)
     kind = deck.choice(card, "DEFINITION", kinds, "TABULAR")
     if deck.choice(card, "VALUE", ("RELATIVE", "ABSOLUTE"), "RELATIVE") == "ABSOLUTE":
-        deck.error(
-            card,
-            card.at("VALUE"),
-            "VALUE=ABSOLUTE is not supported",
-            hint="give the loads the size 1 and the amplitude VALUE=RELATIVE",
-        )
-        return
+        deck.absolute.add(key(name))
     if kind in ENDLESS:
         _endless(deck, card, kind, name, total)
         return

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
+from corota.io.deck.cards.tie import PLANAR
 from corota.io.deck.deck import nearest
 from corota.io.deck.drafts import AttachedDraft, Draft
 from corota.io.deck.elements import ATTACHED
@@ -26,11 +27,17 @@ if TYPE_CHECKING:
     Find = Callable[[Draft], str | Ints | None]
 
 #: The card that gives the value of each.
-CARDS = {"MASS": "MASS", "ROTARYI": "ROTARY INERTIA", "DASHPOTA": "DASHPOT", "GAPUNI": "GAP"}
+CARDS = {
+    "MASS": "MASS",
+    "ROTARYI": "ROTARY INERTIA",
+    "DASHPOTA": "DASHPOT",
+    "DASHPOT1": "DASHPOT",
+    "GAPUNI": "GAP",
+}
 
 
 def elements(deck: Deck, card: Card, type_: str) -> None:
-    """``*ELEMENT, TYPE=MASS``, ``ROTARYI``, ``DASHPOTA`` or ``GAPUNI``: label, nodes.
+    """``*ELEMENT, TYPE=MASS``, ``ROTARYI``, ``DASHPOTA``, ``DASHPOT1`` or ``GAPUNI``: label, nodes.
 
     The set names them.
     """
@@ -63,8 +70,26 @@ def rotary_inertia(deck: Deck, card: Card) -> None:
 
 
 def dashpot(deck: Deck, card: Card) -> None:
-    """``*DASHPOT, ELSET=``: an empty line, then force per velocity along the line."""
-    _value(deck, card, "DASHPOTA", "the damping")
+    """``*DASHPOT, ELSET=``: an empty line or, to the ground, the dof; then force per velocity."""
+    name = key(card.value("ELSET"))
+    if not any(d.type == "DASHPOT1" and key(d.name) == name for d in deck.attached):
+        _value(deck, card, "DASHPOTA", "the damping")
+        return
+    rows = list(card.rows())
+    if len(rows) != 2:
+        text = f"two data lines are expected, the dof and the damping, found {len(rows)}"
+        deck.error(card, card.where, text)
+        return
+    dof = deck.integer(card, rows[0], 0, "the degree of freedom")
+    value = deck.real(card, rows[1], 0, "the damping")
+    if dof is None or value is None:
+        return
+    if dof not in PLANAR:
+        deck.row_error(card, rows[0], 0, f"expected 1, 2 or 6 (rotation), found {dof}")
+    elif not value >= 0.0:
+        deck.row_error(card, rows[1], 0, f"the damping must be >= 0, not {value:g}")
+    else:
+        _assign(deck, card, "DASHPOT1", tuple(value * (i == PLANAR[dof]) for i in range(3)))
 
 
 def _value(deck: Deck, card: Card, type_: str, what: str, place: int = 0) -> None:
@@ -158,6 +183,9 @@ def build_attachments(deck: Deck, model: Model, find: Find) -> None:
                 (value,), turns = draft.value, draft.type == "ROTARYI"
                 mass, inertia = (0.0, value) if turns else (value, 0.0)
                 model.point_masses.append(PointMass(np.array(nodes), mass, inertia, where))
+            elif draft.type == "DASHPOT1":
+                x, y, turn = draft.value
+                model.dashpots.append(Dashpot(nodes[0], to_ground=(x, y, turn), where=where))
             elif draft.type == "DASHPOTA":
                 model.dashpots.append(Dashpot(nodes[0], nodes[1], draft.value[0], where=where))
             else:

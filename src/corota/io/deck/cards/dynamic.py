@@ -306,9 +306,39 @@ def _velocity(deck: Deck, card: Card) -> None:
             deck.velocities.append(Draft("velocity", card, row, row.get(0), (value,), index))
 
 
+def _rotating_velocity(deck: Deck, card: Card) -> None:
+    """Node or set, angular velocity, velocity of the axis; two points of the axis."""
+    rows = list(card.rows())
+    for first, second in zip(rows[::2], rows[1::2], strict=False):
+        names = ("the angular velocity", "vx", "vy", "vz")
+        found = [deck.real(card, first, 1 + i, name, 0.0) for i, name in enumerate(names)]
+        points = [deck.real(card, second, i, "a point of the axis", 0.0) for i in range(6)]
+        if None in found or None in points:
+            return
+        spin, vx, vy, vz = (float(v or 0.0) for v in found)
+        ax, ay, az, bx, by, bz = (float(v or 0.0) for v in points)
+        if not first.get(0):
+            deck.row_error(card, first, 0, "a node number or a set is missing")
+        elif vz != 0.0 or (spin and (math.hypot(bx - ax, by - ay) > 0.0 or az == bz)):
+            deck.row_error(card, second, 0, "the axis must be normal to the plane")
+        else:
+            value = (vx, vy, math.copysign(spin, spin * (bz - az)) if spin else 0.0, ax, ay)
+            deck.velocities.append(Draft("velocity", card, first, first.get(0), value))
+    if not rows or len(rows) % 2:
+        deck.error(card, card.where, "two lines for each set are expected: velocities, axis")
+
+
+def _field(deck: Deck, card: Card) -> None:
+    """Field variables, which no data depend on."""
+    list(card.rows())
+    deck.note(f"{card.where}: {card.spelled}, TYPE=FIELD: no data depend on field variables")
+
+
 #: Readers of ``*INITIAL CONDITIONS`` by type.
 INITIAL = {
     "VELOCITY": _velocity,
+    "ROTATINGVELOCITY": _rotating_velocity,
+    "FIELD": _field,
     "TEMPERATURE": initial_temperature,
     "STRESS": initial_stress,
 }

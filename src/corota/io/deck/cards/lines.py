@@ -276,6 +276,32 @@ def beam_general_section(deck: Deck, card: Card) -> None:
         deck.scope.lines.append(draft)
 
 
+def shear_stiffness(deck: Deck, card: Card) -> None:
+    """``*TRANSVERSE SHEAR STIFFNESS``: G times the shear area of the beam section before it."""
+    beams = [line for line in deck.scope.lines if line.role == "beam"]
+    rows = list(card.rows())
+    if not beams:
+        text = "the card belongs under a *BEAM SECTION, but there is none before it"
+        deck.error(card, card.where, text)
+        return
+    if len(rows) != 1:
+        deck.error(card, card.where, f"one data line is expected, found {len(rows)}")
+        return
+    first = _numbers(deck, card, rows[0], ("the shear stiffness",))
+    other = deck.real(card, rows[0], 1, "the other shear stiffness", first[0] if first else 0.0)
+    if first is None or other is None:
+        return
+    if other != first[0]:
+        deck.note(
+            f"{rows[0].where}: {card.spelled}: the first stiffness is that of shear in the plane"
+        )
+    if rows[0].get(2):
+        deck.note(
+            f"{rows[0].at(2)}: {card.spelled}: slender elements need no compensation: it is ignored"
+        )
+    beams[-1].shear_stiffness = first[0]
+
+
 def spring(deck: Deck, card: Card) -> None:
     """``*SPRING, ELSET=[, NONLINEAR]``: dofs (SPRING1, SPRING2); stiffness, or force and way."""
     elset = deck.required(card, "ELSET")
@@ -362,6 +388,8 @@ def _section(
         )
         return None
     area, inertia, shear = draft.profile
+    if draft.shear_stiffness:
+        shear = draft.shear_stiffness * float(material.compliance()[3, 3])
     if type_ in ("B23", "B33"):
         shear = 0.0
     profile = (area, inertia, shear)
