@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from corota.model.material_table import MaterialTable
     from corota.model.materials import Elastic, Expansion, Orthotropic
     from corota.model.model import Findings, Model
+    from corota.model.mullins import Mullins
     from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Modes
     from corota.model.plasticity import Mises, Voce
     from corota.model.ramberg_osgood import RambergOsgood
@@ -139,6 +140,7 @@ _HOMES = {
     "ModelError": "errors",
     "Modes": "model.paths",
     "MooneyRivlin": "model.hyperelastic",
+    "Mullins": "model.mullins",
     "NeoHooke": "model.hyperelastic",
     "NodalForce": "model.loads",
     "Observer": "results.observer",
@@ -256,6 +258,7 @@ __all__ = [
     "ModelError",
     "Modes",
     "MooneyRivlin",
+    "Mullins",
     "NeoHooke",
     "NodalForce",
     "Norton",

@@ -1,7 +1,8 @@
 """What every material law keeps, whatever it is: tangent, axes, energy, elements, units.
 
 Closed forms of uniaxial, planar, biaxial and shear states differ by law:
-`tests/rubber/test_point.py`, `tests/plastic/test_point.py`, `tests/plastic/test_hill.py`,
+`tests/rubber/test_point.py`, `tests/rubber/test_mullins.py`, `tests/plastic/test_point.py`,
+`tests/plastic/test_hill.py`,
 `tests/plastic/test_ramberg_osgood.py`, `tests/rates/test_point.py`,
 `tests/rates/test_viscoelastic.py`.
 """
@@ -42,6 +43,10 @@ LAWS: dict[str, Callable[[float, float], Any]] = {
     "Ogden": lambda f, t: ct.Ogden((f * 0.5, f * 0.1), (1.5, -2.0), (0.02 / f, 0.0)),
     "Arruda-Boyce": lambda f, t: ct.ArrudaBoyce(f * 1.0, 3.0, 0.02 / f),
     "hyperfoam": lambda f, t: ct.Hyperfoam((f * 0.5, f * 0.1), (4.0, -2.0), (0.1, 0.3)),
+    "Mullins": lambda f, t: ct.Mullins(ct.NeoHooke(f * 0.5, 0.02 / f), 2.0, f * 0.02, 0.1),
+    "Mullins foam": lambda f, t: ct.Mullins(
+        ct.Hyperfoam((f * 0.5, f * 0.1), (4.0, -2.0), (0.1, 0.3)), 1.5, f * 0.02
+    ),
     "Prony": lambda f, t: ct.Viscoelastic(ct.Elastic(f * 2e3, 0.38), terms=[(0.3, 0.1, 0.4 * t)]),
     "Prony rubber": lambda f, t: ct.Viscoelastic(
         ct.NeoHooke(f * 0.5, 0.02 / f), terms=[(0.3, 0.0, 0.4 * t)]

@@ -43,12 +43,16 @@ impl Energy for ChainEnergy {
         self.d == 0.0
     }
     #[inline(always)]
-    fn density<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
-        let mut w = Jet::zero();
-        if self.d != 0.0 {
-            let square = s.theta.exp(2.0).plus(-1.0).scale(0.5);
-            w += (square - s.theta).scale(1.0 / self.d);
+    fn volume<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
+        if self.d == 0.0 {
+            return Jet::zero();
         }
+        let square = s.theta.exp(2.0).plus(-1.0).scale(0.5);
+        (square - s.theta).scale(1.0 / self.d)
+    }
+    #[inline(always)]
+    fn shape<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
+        let mut w = Jet::zero();
         let first = s.powers(2.0);
         let mut power = first;
         for (i, &c) in self.c.iter().enumerate() {

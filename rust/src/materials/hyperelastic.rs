@@ -124,8 +124,25 @@ pub trait Energy: Clone + Debug + Sized {
     fn is_incompressible(&self) -> bool {
         false
     }
-    /// Energy per reference volume.
-    fn density<T: Real>(&self, s: &Stretches<T>) -> Jet<T>;
+    /// Energy per reference volume that the change of shape stores: all but [`Energy::volume`].
+    fn shape<T: Real>(&self, s: &Stretches<T>) -> Jet<T>;
+    /// Energy per reference volume that follows from the volume alone.
+    #[inline(always)]
+    fn volume<T: Real>(&self, _: &Stretches<T>) -> Jet<T> {
+        Jet::zero()
+    }
+
+    /// Whether the law remembers the largest energy of the shape, its only member of the history.
+    const REMEMBERS: bool = false;
+    /// Energy per reference volume after that largest energy, from which the stress follows.
+    #[inline(always)]
+    fn density<T: Real>(&self, s: &Stretches<T>, _largest: T) -> Jet<T> {
+        self.shape(s) + self.volume(s)
+    }
+    /// Part of that energy which is lost.
+    fn lost(&self, _largest: f64) -> f64 {
+        0.0
+    }
 }
 
 /// The law of an energy.
@@ -142,6 +159,21 @@ pub struct Hyperelastic<W> {
 #[inline(always)]
 fn parts<T: Real>(e: &[T; 3]) -> [T; 3] {
     [(e[0] + e[1]).scale(0.5), (e[0] - e[1]).scale(0.5), e[2].scale(0.5)]
+}
+
+/// The variables of an energy by [`parts`] and the strain through the thickness.
+#[inline(always)]
+fn stretches<T: Real>([m, d, s]: [T; 3], z: T) -> Stretches<T> {
+    Stretches {
+        mu: Jet::variable((m - z).scale(1.0 / 3.0), 0),
+        rho: Jet::variable(d.fma(d, s * s), 1),
+        theta: Jet::variable(m.scale(2.0) + z, 2),
+    }
+}
+
+/// The largest energy of the shape of a state that was written.
+fn after<W: Energy>(state: &[f64]) -> f64 {
+    if W::REMEMBERS { state[0] } else { 0.0 }
 }
 
 /// Rows xx, yy, xy of a matrix.
@@ -200,34 +232,43 @@ fn derivatives<T: Real>(
 
 impl<W: Energy> Hyperelastic<W> {
     #[inline(always)]
-    fn density<T: Real>(&self, [m, d, s]: [T; 3], z: T) -> Jet<T> {
-        let radius = d.fma(d, s * s);
-        self.energy.density(&Stretches {
-            mu: Jet::variable((m - z).scale(1.0 / 3.0), 0),
-            rho: Jet::variable(radius, 1),
-            theta: Jet::variable(m.scale(2.0) + z, 2),
-        })
+    fn density<T: Real>(&self, parts: [T; 3], z: T, largest: T) -> Jet<T> {
+        self.energy.density(&stretches(parts, z), largest)
+    }
+
+    /// The largest energy of the shape so far.
+    #[inline(always)]
+    fn largest<T: Real>(state: &PointState<'_>) -> T {
+        if W::REMEMBERS { state.get(0) } else { T::zero() }
+    }
+
+    /// Write the history of a state with strain `z` through the thickness.
+    #[inline(always)]
+    fn keep<T: Real>(&self, e: &[T; 3], z: T, largest: T, state: &mut PointState<'_>) {
+        if W::REMEMBERS {
+            state.set(0, largest.max(self.energy.shape(&stretches(parts(e), z)).v));
+        }
     }
 
     #[inline(always)]
-    fn solid<T: Real>(&self, e: &[T; 4]) -> SolidResponse<T> {
+    fn solid<T: Real>(&self, e: &[T; 4], largest: T) -> SolidResponse<T> {
         const SIXTH: f64 = 1.0 / 6.0;
         let parts = parts(&[e[0], e[1], e[2]]);
-        let w = self.density(parts, e[3]);
+        let w = self.density(parts, e[3], largest);
         derivatives(&w, parts, [SIXTH, SIXTH, 0.0, -2.0 * SIXTH], [1.0, 1.0, 0.0, 1.0])
     }
 
     /// Plane stress at constant volume.
     #[inline(always)]
-    fn flat<T: Real>(&self, e: &[T; 3]) -> SolidResponse<T> {
+    fn flat<T: Real>(&self, e: &[T; 3], largest: T) -> SolidResponse<T> {
         let parts = parts(e);
-        let w = self.density(parts, parts[0].scale(-2.0));
+        let w = self.density(parts, parts[0].scale(-2.0), largest);
         derivatives(&w, parts, [0.5, 0.5, 0.0, 0.0], [0.0; 4])
     }
 
     /// Strain through the thickness that leaves no stress there, and the lanes without one.
     #[inline(always)]
-    fn thickness<T: Real>(&self, e: &[T; 3]) -> (T, T::Mask) {
+    fn thickness<T: Real>(&self, e: &[T; 3], largest: T) -> (T, T::Mask) {
         let parts = parts(e);
         if self.energy.is_incompressible() {
             return (parts[0].scale(-2.0), T::none());
@@ -235,7 +276,7 @@ impl<W: Energy> Hyperelastic<W> {
         let mut z = (e[0] + e[1]).scale(self.contraction);
         let mut open = T::one();
         for _ in 0..MAX_ITERATIONS {
-            let w = self.density(parts, z);
+            let w = self.density(parts, z, largest);
             let stress = w.d[2] - w.d[0].scale(1.0 / 3.0);
             let slope = w.h[5] - w.h[2].scale(2.0 / 3.0) + w.h[0].scale(1.0 / 9.0);
             // Against the stress even where the slope is negative.
@@ -250,19 +291,21 @@ impl<W: Energy> Hyperelastic<W> {
         (z, T::real(0.5).lt(open))
     }
 
+    /// Answer in the plane, and the strain through the thickness.
     #[inline(always)]
-    fn answer<T: Real>(&self, e: &[T; 3]) -> Response<T> {
-        if self.plane == Plane::Strain {
-            let SolidResponse { stress: [x, y, xy, _], tangent, failed } =
-                self.solid(&[e[0], e[1], e[2], T::zero()]);
-            return Response { stress: [x, y, xy], tangent: in_plane(&tangent), failed };
+    fn answer<T: Real>(&self, e: &[T; 3], largest: T) -> (Response<T>, T) {
+        let incompressible = self.energy.is_incompressible();
+        if self.plane == Plane::Strain || incompressible {
+            let z = if incompressible { -(e[0] + e[1]) } else { T::zero() };
+            let SolidResponse { stress: [x, y, xy, _], tangent, failed } = if incompressible {
+                self.flat(e, largest)
+            } else {
+                self.solid(&[e[0], e[1], e[2], z], largest)
+            };
+            return (Response { stress: [x, y, xy], tangent: in_plane(&tangent), failed }, z);
         }
-        if self.energy.is_incompressible() {
-            let SolidResponse { stress: [x, y, xy, _], tangent, failed } = self.flat(e);
-            return Response { stress: [x, y, xy], tangent: in_plane(&tangent), failed };
-        }
-        let (z, failed) = self.thickness(e);
-        let all = self.solid(&[e[0], e[1], e[2], z]);
+        let (z, failed) = self.thickness(e, largest);
+        let all = self.solid(&[e[0], e[1], e[2], z], largest);
         // What is left of the stress through the thickness is removed by its linear part.
         let softness = all.tangent[3][3].recip();
         let mut stress = [all.stress[0], all.stress[1], all.stress[2]];
@@ -274,12 +317,13 @@ impl<W: Energy> Hyperelastic<W> {
                 tangent[i][j] -= share * all.tangent[3][j];
             }
         }
-        Response { stress, tangent, failed }
+        (Response { stress, tangent, failed }, z)
     }
 
-    fn normal(&self, e: [f64; 3]) -> f64 {
+    /// Strain through the thickness of a state.
+    fn normal(&self, e: [f64; 3], state: &[f64]) -> f64 {
         match self.plane {
-            Plane::Stress => self.thickness(&e).0,
+            Plane::Stress => self.thickness(&e, after::<W>(state)).0,
             Plane::Strain => 0.0,
         }
     }
@@ -301,9 +345,9 @@ impl<W: Energy> Material for Hyperelastic<W> {
         }
         let mut law = Self { energy, plane, moduli: [[0.0; 3]; 3], contraction: -1.0 };
         let shear = if incompressible {
-            law.flat(&[0.0; 3]).tangent[2][2]
+            law.flat(&[0.0; 3], 0.0).tangent[2][2]
         } else {
-            let m = law.solid(&[0.0; 4]).tangent;
+            let m = law.solid(&[0.0; 4], 0.0).tangent;
             law.contraction = -m[3][0] / m[3][3];
             let bulk = (m[3][3] + 2.0 * m[3][0]) / 3.0;
             if !(bulk > 0.0 && bulk.is_finite()) {
@@ -314,31 +358,53 @@ impl<W: Energy> Material for Hyperelastic<W> {
         if !(shear > 0.0 && shear.is_finite()) {
             return Err(format!("{}: the initial shear modulus {shear} must be > 0", W::NAME));
         }
-        law.moduli = law.answer(&[0.0; 3]).tangent;
+        law.moduli = law.answer(&[0.0; 3], 0.0).0.tangent;
         Ok(law)
     }
     fn moduli(&self) -> Mat<f64, 3> {
         self.moduli
     }
-    #[inline(always)]
-    fn update<T: Real>(&self, strain: [T; 3], _: &mut PointState<'_>) -> Response<T> {
-        self.answer(&strain)
+    fn n_state(&self) -> usize {
+        usize::from(W::REMEMBERS)
     }
     #[inline(always)]
-    fn update_solid<T: Real>(&self, strain: [T; 4], _: &mut PointState<'_>) -> SolidResponse<T> {
-        self.solid(&strain)
+    fn update<T: Real>(&self, strain: [T; 3], state: &mut PointState<'_>) -> Response<T> {
+        let largest = Self::largest(state);
+        let (response, z) = self.answer(&strain, largest);
+        self.keep(&strain, z, largest, state);
+        response
     }
-    fn out_of_plane(&self, e: [f64; 3], _: [f64; 3], _: &[f64]) -> (f64, f64) {
-        let z = self.normal(e);
+    #[inline(always)]
+    fn update_solid<T: Real>(
+        &self,
+        strain: [T; 4],
+        state: &mut PointState<'_>,
+    ) -> SolidResponse<T> {
+        let largest = Self::largest(state);
+        let [x, y, xy, z] = strain;
+        self.keep(&[x, y, xy], z, largest, state);
+        self.solid(&strain, largest)
+    }
+    fn out_of_plane(&self, e: [f64; 3], _: [f64; 3], state: &[f64]) -> (f64, f64) {
         match self.plane {
-            Plane::Stress => (z, 0.0),
-            Plane::Strain => (0.0, self.solid(&[e[0], e[1], e[2], z]).stress[3]),
+            Plane::Stress => (self.normal(e, state), 0.0),
+            Plane::Strain => {
+                (0.0, self.solid(&[e[0], e[1], e[2], 0.0], after::<W>(state)).stress[3])
+            }
         }
     }
-    fn energy(&self, e: [f64; 3], _: [f64; 3], _: &[f64]) -> f64 {
-        self.density(parts(&e), self.normal(e)).v
+    fn energy(&self, e: [f64; 3], _: [f64; 3], state: &[f64]) -> f64 {
+        let z = self.normal(e, state);
+        self.energy_solid([e[0], e[1], e[2], z], [0.0; 4], state)
     }
-    fn energy_solid(&self, e: [f64; 4], _: [f64; 4], _: &[f64]) -> f64 {
-        self.density(parts(&[e[0], e[1], e[2]]), e[3]).v
+    fn energy_solid(&self, e: [f64; 4], _: [f64; 4], state: &[f64]) -> f64 {
+        let largest = after::<W>(state);
+        self.density(parts(&[e[0], e[1], e[2]]), e[3], largest).v - self.energy.lost(largest)
+    }
+    fn outputs(&self) -> &'static [&'static str] {
+        if W::REMEMBERS { &["DMENER"] } else { &[] }
+    }
+    fn output(&self, _: usize, _: [f64; 3], state: &[f64]) -> f64 {
+        self.energy.lost(after::<W>(state))
     }
 }

@@ -32,7 +32,7 @@ impl Energy for FoamEnergy {
         Ok(Self { terms, beta: ratios.iter().map(|nu| nu / (1.0 - 2.0 * nu)).collect() })
     }
     #[inline(always)]
-    fn density<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
+    fn shape<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
         let mut w = Jet::zero();
         for (&[factor, alpha], &beta) in self.terms.iter().zip(&self.beta) {
             let shape = s.theta.exp(alpha / 3.0) * s.powers(alpha);

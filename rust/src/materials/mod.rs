@@ -14,6 +14,7 @@ pub mod hyperfoam;
 pub mod law;
 pub mod material;
 pub mod mises;
+pub mod mullins;
 pub mod ogden;
 pub mod orthotropic;
 pub mod polynomial;
@@ -42,6 +43,7 @@ macro_rules! laws {
             ogden::Ogden,
             arruda_boyce::ArrudaBoyce,
             hyperfoam::Hyperfoam,
+            mullins::Mullins,
             tabulated::Tabulated,
             c_function::CFunction,
             umat::Umat,

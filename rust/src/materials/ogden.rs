@@ -50,8 +50,12 @@ impl Energy for OgdenEnergy {
         self.d.iter().all(|&d| d == 0.0)
     }
     #[inline(always)]
-    fn density<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
-        let mut w = s.volume(&self.d);
+    fn volume<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
+        s.volume(&self.d)
+    }
+    #[inline(always)]
+    fn shape<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
+        let mut w = Jet::zero();
         for &[factor, alpha] in &self.terms {
             w += s.powers(alpha).plus(-3.0).scale(factor);
         }

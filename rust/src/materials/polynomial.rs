@@ -42,8 +42,12 @@ impl Energy for PolynomialEnergy {
         self.d.iter().all(|&d| d == 0.0)
     }
     #[inline(always)]
-    fn density<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
-        let mut w = s.volume(&self.d);
+    fn volume<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
+        s.volume(&self.d)
+    }
+    #[inline(always)]
+    fn shape<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
+        let mut w = Jet::zero();
         let has = |k: usize| self.c.iter().zip(POWERS).any(|(&c, p)| c != 0.0 && p[k] > 0);
         let invariants = [
             if has(0) { s.first() } else { Jet::zero() },

@@ -30,8 +30,9 @@ TERMS = {
     "ALLSE": "recoverable strain energy",
     "ALLPD": "plastic work",
     "ALLCD": "work of creep and of viscoelasticity that is not recoverable",
+    "ALLDMD": "energy lost by the softening of rubber",
     "ALLAE": "energy of the drilling penalty",
-    "ALLIE": "internal energy: ALLSE + ALLPD + ALLCD + ALLAE",
+    "ALLIE": "internal energy: ALLSE + ALLPD + ALLCD + ALLDMD + ALLAE",
     "ALLKE": "kinetic energy",
     "ALLVD": "viscous dissipation: dashpots, Rayleigh damping",
     "ALLFD": "frictional dissipation",
@@ -145,8 +146,12 @@ class Energies:
                 "ALLSE": sums["strain energy"] - sums["artificial energy"] + stored,
                 "ALLPD": sums["plastic work"],
                 **({"ALLCD": sums["creep work"]} if self.system.depends_on_time else {}),
+                **({"ALLDMD": sums["damage"]} if sums["damage"] else {}),
                 "ALLAE": sums["artificial energy"],
-                "ALLIE": sums["strain energy"] + sums["plastic work"] + sums["creep work"] + stored,
+                "ALLIE": stored
+                + sum(
+                    sums[name] for name in ("strain energy", "plastic work", "creep work", "damage")
+                ),
                 "ALLTH": sums["thermal work"],
             }
         )

@@ -28,7 +28,7 @@ TANGENT_ERROR, TURN_ERROR, ENERGY_ERROR = 1e-4, 1e-8, 2e-2
 #: Angle by which a path is turned [rad].
 ANGLE = 0.7
 #: Outputs of laws that are work per volume beside the recoverable energy.
-WORKS = ("PWORK", "CWORK")
+WORKS = ("PWORK", "CWORK", "DMENER")
 
 
 def strain_paths(size: float) -> dict[str, Floats]:

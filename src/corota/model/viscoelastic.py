@@ -10,7 +10,6 @@ import numpy as np
 
 from corota.display import Brief
 from corota.errors import InputError, number
-from corota.model.hyperelastic import Hyperelastic
 from corota.model.materials import Elastic, Material, isotropic_compliance
 from corota.model.single_point import SinglePoint
 from corota.names import choose
@@ -116,7 +115,7 @@ class Viscoelastic(SinglePoint):
 
     def __post_init__(self) -> None:
         choose(self.moduli, MODULI, "moduli", self.where)
-        if not isinstance(self.parent, Elastic | Hyperelastic):
+        if not isinstance(self.parent, Elastic) and self.parent.law not in PARENTS:
             raise InputError(
                 f"Elastic and hyperelastic materials relax, {type(self.parent).__name__} does not",
                 self.where,

@@ -34,7 +34,7 @@ DERIVED_FILES = {item.array for row in TABLE.values() for item in row.invariants
 #: Order of importance; other names come last.
 ORDER = (
     "U", "S", *CONTACT, "RF", "PEEQ", "N", "M1", "M2", "UR", "VEL", "E", "YRATIO", "ENER", "F",
-    "PE", "ACC", "ALPHA", "PWORK", "PDISS", "CEEQ", "CWORK", "TRISE", "STH",
+    "PE", "ACC", "ALPHA", "PWORK", "PDISS", "CEEQ", "CWORK", "DMENER", "TRISE", "STH",
 )  # fmt: skip
 #: Share of the largest force below which a reaction is rounding.
 NO_FORCE = 1e-9

@@ -40,7 +40,11 @@ SCALARS: dict[str, tuple[str, str]] = {
     "limit point": ("1 at a limit point of a path", ""),
     "bifurcation point": ("1 at a bifurcation point of a path", ""),
     **dict.fromkeys(
-        ("ALLSE", "ALLPD", "ALLCD", "ALLAE", "ALLIE", "ALLKE", "ALLVD", "ALLFD", "ALLSD", "ALLCL"),
+        ("ALLSE", "ALLPD", "ALLCD", "ALLDMD", "ALLAE", "ALLIE", "ALLKE", "ALLVD", "ALLFD"),
+        ("part of the energy balance", "energy"),
+    ),
+    **dict.fromkeys(
+        ("ALLSD", "ALLCL"),
         ("part of the energy balance", "energy"),
     ),
     **dict.fromkeys(

@@ -170,6 +170,9 @@ class MaterialDraft:
     shift: WLF | None = None
     moduli: str = "LONGTERM"
     heat_fraction: float = 0.0
+    #: r, m and beta of the softening of rubber, with their card.
+    softening: tuple[float, float, float] | None = None
+    softening_card: Card | None = None
     #: Kind, number of terms and Poisson's ratio of a hyperelastic law that is fitted to `tests`.
     fit: tuple[str, int, float] | None = None
     tests: dict[str, list[tuple[float, float]]] = field(default_factory=dict)

@@ -111,6 +111,7 @@ _TABLE: dict[str, Keyword] = {
     "HYPERFOAM": Keyword(
         card("hyperelastic.hyperfoam"), "N TESTDATAINPUT POISSON MODULI", place="model"
     ),
+    "MULLINS EFFECT": Keyword(card("hyperelastic.mullins_effect"), place="model"),
     "USER MATERIAL": Keyword(
         card("user_material.user_material"), "CONSTANTS TYPE", "UNSYMM", place="model"
     ),

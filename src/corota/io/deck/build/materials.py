@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
-from corota.io.deck.cards.hyperelastic import fitted
+from corota.io.deck.cards.hyperelastic import build_mullins, fitted
 from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
@@ -57,6 +57,8 @@ def build_material(deck: Deck, draft: MaterialDraft, temperature: float | None) 
             common = {"name": draft.name, "where": draft.law_where, "rho": draft.rho}
             return build_umat(deck, draft, common | {"rayleigh": draft.damping})  # type: ignore[no-any-return]
         found = _by_temperature(draft)
+        if draft.softening_card is not None and found is not None:
+            return build_mullins(draft, found)
         if draft.prony_card is not None and found is not None:
             relaxing: Material = build_viscoelastic(draft, found, temperature)
             return relaxing
@@ -71,7 +73,7 @@ def build_material(deck: Deck, draft: MaterialDraft, temperature: float | None) 
         # Constants of a plastic material are checked with its curve, on the card of the curve.
         plastic = draft.plastic
         card = draft.law_card if plastic is None else plastic.card or plastic.cyclic_card
-        card = draft.johnson_cook_card or draft.prony_card or card
+        card = draft.johnson_cook_card or draft.softening_card or draft.prony_card or card
         deck.error(card, error.where or draft.law_where, error.message)
         return None
 

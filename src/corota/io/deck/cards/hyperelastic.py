@@ -5,13 +5,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from corota.errors import InputError
 from corota.io.deck.cards.material import constants, moduli, open_material
 from corota.model import hyperelastic as rubber
+from corota.model.mullins import Mullins
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import MaterialDraft
     from corota.io.deck.lexer import Card
+    from corota.model.materials import Material
 
 #: Class of each kind.
 CLASSES: dict[str, Any] = {
@@ -98,6 +101,56 @@ def test_data(deck: Deck, card: Card, test: str) -> None:
         found.tests.setdefault(test, []).extend(rows)
 
 
+def mullins_effect(deck: Deck, card: Card) -> None:
+    """``*MULLINS EFFECT``: r, m and beta of the softening of the open hyperelastic material."""
+    found = open_material(deck, card)
+    rows = list(card.rows())
+    if found is None:
+        return
+    if len(rows) != 1:
+        deck.error(card, card.where, "one data line is expected: r, m, beta")
+        return
+    deck.extra_fields(card, rows[0], 3)
+    r, m = (deck.real(card, rows[0], i, name) for i, name in enumerate(("r", "m")))
+    beta = deck.real(card, rows[0], 2, "beta", 0.0)
+    if r is None or m is None or beta is None:
+        return
+    if found.softening_card is not None:
+        deck.error(card, card.where, f"material {found.name} already has a {card.spelled}")
+        return
+    found.softening, found.softening_card = (r, m, beta), card
+
+
+def build_mullins(draft: MaterialDraft, parent: Material) -> Mullins:
+    """The softening material of a draft with the constants of its other cards.
+
+    Raises
+    ------
+    InputError
+        With the place, where it does not go with the other cards, or a number is outside its range.
+    """
+    from corota.model.material_table import MaterialTable
+
+    assert draft.softening is not None
+    assert draft.softening_card is not None
+    where = draft.softening_card.where
+    if draft.prony_card is not None:
+        raise InputError("a material that softens does not relax: use one of both cards", where)
+    if isinstance(parent, MaterialTable):
+        raise InputError("a material that softens has constants at one temperature", where)
+    if not isinstance(parent, rubber.Hyperelastic):
+        raise InputError("it belongs below *HYPERELASTIC or *HYPERFOAM", where)
+    return Mullins(
+        parent,
+        *draft.softening,
+        rho=parent.rho,
+        expansion=parent.expansion,
+        rayleigh=parent.rayleigh,
+        name=parent.name,
+        where=where,
+    )
+
+
 def fitted(draft: MaterialDraft, common: dict[str, Any]) -> rubber.Hyperelastic:
     """The law that a material's tests give.
 
@@ -119,4 +172,4 @@ def fitted(draft: MaterialDraft, common: dict[str, Any]) -> rubber.Hyperelastic:
     return law.with_ratio(ratio) if ratio and kind != "HYPERFOAM" else law
 
 
-__all__ = ["fitted", "hyperelastic", "hyperfoam", "test_data"]
+__all__ = ["build_mullins", "fitted", "hyperelastic", "hyperfoam", "mullins_effect", "test_data"]

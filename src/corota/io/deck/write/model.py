@@ -36,6 +36,7 @@ from corota.mesh.parts import cells_of, nodes_of_cells
 from corota.model.compiled import Umat
 from corota.model.local_strain import dialect_strain
 from corota.model.material_table import MaterialTable
+from corota.model.mullins import Mullins
 from corota.model.steps import Static, Step
 from corota.model.viscoelastic import Viscoelastic
 
@@ -220,7 +221,7 @@ class _Writer:
             name += "_"
         self._materials[index] = name
         relaxing = material
-        if isinstance(material, Viscoelastic):
+        if isinstance(material, Viscoelastic | Mullins):
             material = material.parent
         law = (
             user_material_cards(material, number)
@@ -236,7 +237,10 @@ class _Writer:
         lines.append(f"*MATERIAL, NAME={name}\n{law}{plastic_cards(material)}")
         if isinstance(relaxing, Viscoelastic):
             lines.append(prony_cards(relaxing))
-            material = relaxing
+        if isinstance(relaxing, Mullins):
+            softening = (relaxing.r, relaxing.m, relaxing.beta)
+            lines.append(f"*MULLINS EFFECT\n{', '.join(number(v) for v in softening)}\n")
+        material = relaxing
         lines.append(expansion_cards(material) + damping_card(material.rayleigh))
         if isinstance(material, MaterialTable) and material.density_varies:
             lines.append("*DENSITY\n")
