@@ -95,6 +95,9 @@ ENTRIES = {
     ),
     "perforated_strip/perforated_strip": Entry("Plasticity"),
     "plastic_cook/plastic_cook": Entry("Plasticity"),
+    "portal/portal": Entry(
+        "Beams", "Load over that of the mechanism with four hinges: 0.9962 (axial forces)."
+    ),
     "rollup/rollup": Entry(
         "Elements", "The gap of the closed circle over its length: 0.0007; exact 0.", "rollup"
     ),

@@ -76,6 +76,10 @@ def add_end_moments(
         moment = across * length**2 / 12.0
         for name in ("M1", "M2"):
             own.values[name] = own.values[name] + moment[:, None]
+        if own.fibers is None and block.section.fiber > 0.0:
+            bending = moment[:, None] * block.section.fiber / block.section.profile[1]
+            for name, sign in (("SR1", 1.0), ("SL1", -1.0), ("SR2", 1.0), ("SL2", -1.0)):
+                own.values[name] = own.values[name] + sign * bending
 
 
 __all__ = ["add_end_moments"]

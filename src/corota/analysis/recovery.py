@@ -16,8 +16,15 @@ if TYPE_CHECKING:
 
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.user_material import UserBlocks
+    from corota.model.sections import Section
 
     Floats = NDArray[np.float64]
+
+
+#: Sums over the model, in their order.
+SUMS = (
+    "strain energy", "artificial energy", "plastic work", "creep work", "damage", "thermal work",
+)  # fmt: skip
 
 
 def recover(
@@ -44,8 +51,7 @@ def recover(
         sums = communicator.sum(sums)
         largest = communicator.broadcast(max(communicator.gather(largest), default=0.0))
     system.largest_linear_strain = largest
-    names = ("strain energy", "artificial energy", "plastic work", "creep work", "thermal work")
-    return fields, dict(zip(names, sums.tolist(), strict=True))
+    return fields, dict(zip(SUMS, sums.tolist(), strict=True))
 
 
 def _own(
@@ -53,7 +59,7 @@ def _own(
 ) -> tuple[list[PointFields], Floats, float]:
     """Fields, sums and largest linear local strain of the own elements."""
     fields, energy, largest = [], 0.0, 0.0
-    artificial = plastic = creep = 0.0
+    artificial = plastic = creep = damage = 0.0
     # Those of the committed state, after which no time has passed.
     system.core.set_clock(0.0, 0.0, False)
     raw = system.core.recover(system.in_space(u), system.nlgeom)
@@ -69,6 +75,8 @@ def _own(
                 )
         if block.section.axisymmetric:
             own["values"].pop("STH", None)  # a ring has no thickness
+        if "M1" in own["values"]:
+            own["values"] |= surface_stress(block.section, own["values"], own.get("fibers"))
         if system.nlgeom and "M1" in own["values"]:
             # Moments of the ends balance the shear force over the current length of a beam.
             values = own["values"]
@@ -79,6 +87,8 @@ def _own(
             plastic += float(np.einsum("ep,ep->", work, own["volume"]))
         if (work := own["values"].get("CWORK")) is not None:
             creep += float(np.einsum("ep,ep->", work, own["volume"]))
+        if (lost := own["values"].get("DMENER")) is not None:
+            damage += float(np.einsum("ep,ep->", lost, own["volume"]))
         if "heat" in own:
             system.free.record(index, own["heat"], own["volume"], own.get("stabilized"))
         plastic += own["dissipated_energy"]
@@ -99,7 +109,30 @@ def _own(
         )
         add_derived(found)
         fields.append(found)
-    return fields, np.array([energy, artificial, plastic, creep, system.free.work]), largest
+    return fields, np.array([energy, artificial, plastic, creep, damage, system.free.work]), largest
+
+
+def surface_stress(
+    section: Section, values: dict[str, Floats], fibers: Floats | None
+) -> dict[str, Floats]:
+    """Axial stress of beams at their surfaces, each of shape (n, 1).
+
+    ``SR1`` and ``SL1`` are those on the right and the left of the way from the first end to the
+    second, at the first end; ``SR2`` and ``SL2`` at the second. Empty where the distance of the
+    surfaces is not known.
+    """
+    names = ("SR1", "SL1", "SR2", "SL2")
+    if fibers is not None:
+        stress = fibers[:, [0, 0, -1, -1], [0, -1, 0, -1], 0]
+        return {name: stress[:, i : i + 1] for i, name in enumerate(names)}
+    if not section.fiber > 0.0:
+        return {}
+    area, inertia, _ = section.profile
+    found = {}
+    for name in names:
+        bending = values[f"M{name[-1]}"] * section.fiber / inertia
+        found[name] = values["N"] / area + (bending if name[1] == "R" else -bending)
+    return found
 
 
 __all__ = ["recover"]

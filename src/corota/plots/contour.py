@@ -40,7 +40,7 @@ PIXELS_FROM = 60000
 
 
 #: Variables of line elements only.
-LINE_ONLY = ("N", "V", "M1", "M2", "PR1", "PR2")
+LINE_ONLY = ("N", "V", "M1", "M2", "PR1", "PR2", "SR1", "SL1", "SR2", "SL2")
 #: Cells' edges are drawn by default where cells are larger than this share of the picture.
 EDGES_FROM = 0.008
 

@@ -75,6 +75,10 @@ PDISP = Block(
     "PU",
 )
 CONTACT = _scalars("CONTACT", ("COPEN", "CSLIP1", "CSLIP2", "CPRESS", "CSHEAR1", "CSHEAR2"), "CSTR")
+#: Axial stress of beams at their surfaces, by the name of its values at both ends.
+SURFACES = {
+    side: _scalars(name, (name,), "S") for side, name in (("SR", "SRIGHT"), ("SL", "SLEFT"))
+}
 
 
 def blocks() -> list[Block]:
@@ -84,10 +88,10 @@ def blocks() -> list[Block]:
     scalars = [_block(name) for name in numbers if not variables()[name].tensor]
     known = ("PE", "ENER")  # as CalculiX orders them
     scalars.sort(key=lambda block: known.index(block.name) if block.name in known else len(known))
-    return [*first, *scalars[:2], CONTACT, *scalars[2:]]
+    return [*first, *scalars[:2], CONTACT, *scalars[2:], *SURFACES.values()]
 
 
 __all__ = [
     "CONTACT", "DISP", "ELEMENTS", "FORC", "NAMES", "NDTEMP", "NODES", "PDISP", "STRESS",
-    "TOSTRAIN", "VELO", "Block", "blocks",
+    "SURFACES", "TOSTRAIN", "VELO", "Block", "blocks",
 ]  # fmt: skip

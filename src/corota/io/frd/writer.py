@@ -20,6 +20,7 @@ from corota.io.frd.layout import (
     NDTEMP,
     PDISP,
     STRESS,
+    SURFACES,
     TOSTRAIN,
     VELO,
     blocks,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.io.frd.layout import Block
+    from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.model.paths import Modes
     from corota.model.steps import Step
@@ -294,10 +296,13 @@ class FrdWriter:
             rest = np.concatenate(lines) - np.concatenate(self._lines)
             shift[len(labels) :, :2] = rest
         found: list[tuple[Block, Ints, Floats]] = []
+        surfaces = surface_stresses(self._model.mesh, frame)
         for block in blocks():
             if not self._wanted(block, frame):
                 continue
-            if block is DISP:
+            if block.name in surfaces:
+                found.append((block, every, longer(surfaces[block.name][:, None])))
+            elif block is DISP:
                 found.append((block, every, shift))
             elif block is VELO and frame.V is not None:
                 found.append((block, every, longer(data["velocity"])))
@@ -351,6 +356,27 @@ class FrdWriter:
     def close(self, info: dict[str, Any] | None = None) -> None:
         """Close the file."""
         self._file.close()
+
+
+def surface_stresses(mesh: Mesh, frame: Frame) -> dict[str, Floats]:
+    """Axial stress at the surfaces of the beams at nodes, by block; empty without beams.
+
+    Where beams meet it is that of the largest size.
+    """
+    found: dict[str, Floats] = {}
+    for block in frame.fields:
+        if "SR1" not in block.values or not len(block.cells):
+            continue
+        number, _ = mesh.locate(int(block.cells[0]))
+        nodes = mesh.cells[number].nodes[block.cells - mesh.offsets[number]]
+        for side, kind in SURFACES.items():
+            ends = np.hstack([block.values[f"{side}{end}"] for end in (1, 2)])
+            at = found.setdefault(kind.name, np.zeros(mesh.n_nodes))
+            order = np.argsort(np.abs(ends), axis=None)  # the last one of a node stays
+            largest = np.zeros(mesh.n_nodes)
+            largest[nodes.ravel()[order]] = ends.ravel()[order]
+            found[kind.name] = np.where(np.abs(largest) > np.abs(at), largest, at)
+    return found
 
 
 def write_frd(results: Results, path: Path, binary: bool = False, **options: Any) -> None:

@@ -19,7 +19,6 @@ from corota.io.tables.dat_contact import contact_tables
 from corota.io.tables.dat_numbers import fortran, rows
 from corota.io.tables.dat_section import VARIABLES as SECTION_VARIABLES
 from corota.io.tables.dat_section import section_tables
-from corota.mesh.parts import cells_of
 from corota.results.table import TABLE, variables
 
 if TYPE_CHECKING:
@@ -240,26 +239,17 @@ def _at_fibers(model: Model, block: PointFields, name: str) -> Floats | None:
     At the first end on the right of the way to the second and on the left, then at the second.
     Elastic beams give the stress alone.
     """
-    if name not in FIBER_VALUES or "M1" not in block.values or not len(block.cells):
+    if name not in FIBER_VALUES or "SR1" not in block.values or not len(block.cells):
         return None
-    if block.fibers is not None:
-        column = FIBER_VALUES.index(name)
-        stress = block.fibers[:, [0, 0, -1, -1], [0, -1, 0, -1], column]
+    if name == "S":
+        stress = np.hstack([block.values[s] for s in ("SR1", "SL1", "SR2", "SL2")])
+    elif block.fibers is not None:
+        stress = block.fibers[:, [0, 0, -1, -1], [0, -1, 0, -1], FIBER_VALUES.index(name)]
         if name == "PEEQ":
             return stress
-    elif name != "S":
+    else:
         return None
-    cell = int(block.cells[0])
-    number, _ = model.mesh.locate(cell)
-    if block.fibers is None:
-        beams = [s for s in model.sections if s.element == "BEAM" and s.fiber > 0.0]
-        section = next((s for s in beams if cell in cells_of(model.mesh, s.cells)), None)
-        if section is None:
-            return None
-        area, inertia, _ = section.profile
-        axial = block.values["N"][:, :1] / area
-        bending = [block.values[m][:, :1] * section.fiber / inertia for m in ("M1", "M2")]
-        stress = np.hstack([axial + sign * b for b in bending for sign in (1.0, -1.0)])
+    number, _ = model.mesh.locate(int(block.cells[0]))
     rows = block.cells - model.mesh.offsets[number]
     place = model.mesh.points[model.mesh.cells[number].nodes[rows]]
     along = place[:, 1] - place[:, 0]
