@@ -57,6 +57,20 @@ def test_a_umat_in_small_displacements_is_the_law_of_the_core(library: Path, ele
     assert found == pytest.approx(stress, rel=1e-6, abs=1e-6)
 
 
+def test_flow_of_a_umat_takes_the_iterations_of_the_core(library: Path) -> None:
+    """At plastic strains of some tenths: increments begin with the tangent of further flow."""
+    core = ct.Mises(E=STEEL[0], nu=STEEL[1], yield_stress=STEEL[2], isotropic=STEEL[3])
+    counts = []
+    for material in (core, steel(library)):
+        model = ct.Model(ct.mesh.rectangle(10.0, 1.0, 10, 2, "quad8"))
+        model.section("all", element="Q8R", material=material, plane="strain")
+        model.fix("left")
+        model.fix("right", x=None, y=-3.0)
+        frames = ct.solve(model, ct.Static(increments=20), threads=1).frames
+        counts.append(sum(frame.scalars["iterations"] for frame in frames[1:]))
+    assert counts[1] <= 1.15 * counts[0]
+
+
 @pytest.mark.parametrize("element", ["Q4", "Q8R", "Q4S"])
 def test_a_umat_in_terms_of_the_gradient_is_neo_hooke(library: Path, element: str) -> None:
     """Large strain and rotation; stress and rate of Jaumann against the law of the core."""

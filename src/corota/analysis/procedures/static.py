@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import contextlib
 import math
 import warnings
 from dataclasses import replace
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.failure import ElementFailure
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.newton import Outcome, Settings
 from corota.analysis.procedures.carried_bodies import carried_bodies
@@ -48,6 +50,8 @@ by_relaxation = lazy("corota.analysis.procedures.static_relaxation:by_relaxation
 STALLED = 3
 #: Residual after a first iteration with the elastic tangent up to which an increment unloads.
 ELASTIC = 0.01
+#: Change of a force, relative to the largest, that is none.
+UNCHANGED = 1e-9
 #: Share of the increment that would have the allowed error of creep, and largest growth.
 CREEP_SAFETY, MOST_GROWTH = 0.9, 4.0
 #: Note of the iterations of such an attempt.
@@ -138,7 +142,7 @@ class StaticStepper(NewtonStepper):
     def solve(self, target: float) -> Attempt:
         """Newton's method, and reasons to refuse an equilibrium state."""
         system, state, step = self.system, self.state, self.step
-        known = state.at if system.holds(target) else None
+        known = self.known(target)
         may_unload = self.remembers and self.control.attempt == 1
         turns = may_unload and self.load_may_turn(target)
         before = 0
@@ -189,6 +193,21 @@ class StaticStepper(NewtonStepper):
         outcome.converged = outcome.converged and not outcome.reason
         reason = "" if outcome.converged else outcome.reason or "no convergence"
         return Attempt(target, outcome, contact, reason)
+
+    def known(self, target: float) -> Evaluation | None:
+        """The evaluation of the committed state, if its force is that at another time as well.
+
+        Of laws that may depend on time this is tried: a committed state of flow without rates is
+        on its yield surface, where an evaluation has the elastic tangent.
+        """
+        system, state = self.system, self.state
+        if state.at is None or system.holds(target):
+            return state.at
+        with contextlib.suppress(ElementFailure):  # which Newton's method reports
+            change = np.abs(system.forces(state.u, target).internal - state.at.internal)
+            if change.max(initial=0.0) <= UNCHANGED * state.at.scale.max(initial=0.0):
+                return state.at
+        return None
 
     def load_may_turn(self, target: float) -> bool:
         """Whether the change of the load works against the last increment.
