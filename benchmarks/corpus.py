@@ -1,7 +1,8 @@
 """The corpus of small decks in the layouts of pre-processors, with CalculiX's answers.
 
 Run with ``python -m benchmarks.corpus``: it writes ``tests/data/corpus`` again (needs ``ccx``) and
-prints how many decks are accepted, run and agree. ``--check`` writes nothing.
+prints how many decks are accepted, run and agree. ``--check`` writes nothing. ``--accepted`` reads
+every deck of the tests and of the pages, and counts.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -209,8 +210,27 @@ def compare(deck: Path, rows: list[list[float]]) -> tuple[bool, bool, float]:
     return accepted, True, worst / size if size else float("inf")
 
 
+def count_accepted() -> None:
+    """Print how many decks of the tests and of the pages are read, and why the others are not."""
+    root = FOLDER.parents[2]
+    decks = sorted([*(root / "tests" / "data").rglob("*.inp"), *(root / "docs").rglob("*.inp")])
+    refused = 0
+    for deck in decks:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                ct.read(deck)
+        except ct.CorotaError as error:
+            refused += 1
+            print(f"{deck.name}: {str(error).splitlines()[0]}")
+    print(f"{len(decks) - refused} of {len(decks)} decks are read")
+
+
 def main() -> None:
     """Write the corpus and print the table."""
+    if "--accepted" in sys.argv:
+        count_accepted()
+        return
     if "--check" not in sys.argv:
         shutil.rmtree(FOLDER, ignore_errors=True)
         FOLDER.mkdir(parents=True)

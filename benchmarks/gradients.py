@@ -516,6 +516,8 @@ def campaign(first: int, count: int, parameters: int) -> int:
 
 #: Elements along and across the strips of about 410, 41 thousand and 250 thousand dofs.
 SIZES = ((40, 4), (400, 50), (1250, 99))
+#: Force at the end of the strips: that of full plastic flow of the second is 0.5.
+FORCES = {"elastic": -2.0, "J2": -0.45, "contact": -5.0}
 
 
 def strip(kind: str, size: tuple[int, int]) -> ct.Model:
@@ -525,11 +527,11 @@ def strip(kind: str, size: tuple[int, int]) -> ct.Model:
     model = ct.Model(mesh)
     material: Any = ct.Elastic(E=1000.0, nu=0.3)
     if kind == "J2":
-        material = ct.Mises(1000.0, 0.3, yield_stress=2.0, isotropic=50.0)
+        material = ct.Mises(1000.0, 0.3, yield_stress=20.0, isotropic=50.0)
     model.section("all", element="Q4I", material=material)
     model.fix("left")
     right = mesh.node_sets["right"]
-    model.force(right, y=-0.4 if kind != "contact" else -3.0)
+    model.force(right, y=FORCES[kind] / len(right))
     if kind == "contact":
         model.contact("bottom", ct.RigidCurve.line((-2.0, -0.2), (14.0, -0.2)))
     model.steps = [ct.Static(increments=5, fixed_increments=kind != "contact")]

@@ -127,9 +127,7 @@ def chain(links: int, fibers: int, share: float, rates: bool = True) -> Answer:
                 dp[excess] = (np.abs(trial[excess]) - limit[excess]) / (YOUNG + SLOPE)
         plastic += dp * np.sign(trial)
         stress = trial - YOUNG * dp * np.sign(trial)
-        # The hardening stores a part.
-        lost = (np.abs(stress) - SLOPE * (accumulated + 0.5 * dp)) * dp
-        work += 2.0 * float((lost @ weight) @ joint)
+        work += 2.0 * float(((np.abs(stress) * dp) @ weight) @ joint)
         accumulated += dp
         force = (stress @ weight) * joint
         moment = (stress * eta) @ weight / whole * joint
@@ -166,7 +164,7 @@ def chain(links: int, fibers: int, share: float, rates: bool = True) -> Answer:
     )
 
 
-def ring(cells: int, through: int, increments: int) -> Answer:
+def ring(cells: int, through: int, increments: int, rates: bool = True) -> Answer:
     """The same by eight-node elements in plane stress, with contact at a rigid line."""
     import corota as ct
 
@@ -183,7 +181,7 @@ def ring(cells: int, through: int, increments: int) -> Answer:
         nu=0.3,
         yield_stress=YIELD,
         isotropic=SLOPE,
-        rate=ct.CowperSymonds(RATE, POWER),
+        rate=ct.CowperSymonds(RATE, POWER) if rates else None,
         rho=DENSITY,
     )
     model.section("all", element="Q8R", material=steel, plane="stress", thickness=1.0)

@@ -62,14 +62,14 @@ class Adjoint:
         Those of this frame, with their columns.
     forces : ndarray, shape (n_dofs, m)
         Weights z of the residual.
-    histories : list of list of ndarray
+    histories : sequence of sequence of ndarray
         Weights y of the new histories, by measure; empty where there are none.
     """
 
     increment: Increment
     measures: list[tuple[int, Measure]]
     forces: Floats
-    histories: list[list[Floats]] = field(default_factory=list)
+    histories: Sequence[Sequence[Floats]] = field(default_factory=list)
     #: Weights of what a path prescribes, by column, and its value; None by load control.
     control: tuple[Floats, float] | None = None
     #: Weights of the gaps of closed surfaces, shape (n_multipliers, m); None without contact.
@@ -308,7 +308,7 @@ def _backward(
     system = trajectory.system
     core = system.core
     if trajectory.remembers:
-        core.set_histories(increment.histories)
+        core.set_histories(list(increment.histories))
     point = trajectory.point(increment)
     trajectory.require_equilibrium(point)
     here, nothing = system.in_space(point.u), np.zeros(system.n_dofs)
@@ -334,7 +334,7 @@ def _backward(
             found = core.differentiate(here, system.nlgeom, nothing, y[column], ["displacements"])
             rhs[:, column] -= system.at_nodes(found["displacements"])
     z = _solve(trajectory, point, rhs, moved, exact=trajectory.remembers)
-    adjoint = Adjoint(increment, own, z, [list(each) for each in y])
+    adjoint = Adjoint(increment, own, z, [trajectory.store.keep(each) for each in y])
     _at_fixed_control(trajectory, point, own, adjoint)
     if later is not None:
         assert motion is not None

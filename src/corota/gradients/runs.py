@@ -15,6 +15,7 @@ from corota.gradients.adjoint import adjoints, control_row
 from corota.gradients.differences import derivative
 from corota.gradients.measures import Measure, SpecialMeasure, combine, leaves
 from corota.gradients.parameters import Field, Parameter
+from corota.gradients.store import HistoryStore
 from corota.gradients.trajectory import Trajectory, increments_of
 from corota.model.paths import DisplacementControl
 from corota.model.steps import Static, listed_steps
@@ -44,6 +45,8 @@ def gradient(
     results: Results,
     measure: Measure | Sequence[Measure],
     wrt: Parameter | Field | Sequence[Parameter | Field],
+    *,
+    memory: float | None = None,
 ) -> Any:
     """Gradient of measures of a run by parameters of its model, by the adjoint method.
 
@@ -57,6 +60,9 @@ def gradient(
     measure : Measure or sequence of Measure
     wrt : Parameter, Field or sequence of these
         See :mod:`corota.gradients.parameters`.
+    memory : float, optional
+        Memory for the histories of all increments and their adjoint states [MB]; what does not fit
+        goes to a temporary file, with the same gradient to the bit. By default all is in memory.
 
     Returns
     -------
@@ -85,7 +91,7 @@ def gradient(
     """
     measures = [measure] if isinstance(measure, Measure) else list(measure)
     wanted = [wrt] if isinstance(wrt, (Parameter, Field)) else list(wrt)
-    run = Run(results, measures)
+    run = Run(results, measures, memory=memory)
     found = [run.by(parameter) for parameter in wanted]
     if isinstance(measure, Measure):
         found = [each[0] for each in found]
@@ -101,9 +107,17 @@ class Run:
     measures : sequence of Measure
     adjoint : bool
         Whether there will be gradients; else the values alone.
+    memory : float, optional
+        As of :func:`gradient`.
     """
 
-    def __init__(self, results: Results, measures: Sequence[Measure], adjoint: bool = True) -> None:
+    def __init__(
+        self,
+        results: Results,
+        measures: Sequence[Measure],
+        adjoint: bool = True,
+        memory: float | None = None,
+    ) -> None:
         self.measures = list(measures)
         for each in self.measures:
             if not isinstance(each, Measure):
@@ -118,7 +132,8 @@ class Run:
         for leaf in self.leaves:
             if isinstance(leaf, SpecialMeasure):
                 leaf.prepare(results)
-        self.trajectory = Trajectory(self.model, self.steps, self.threads)
+        self.store = HistoryStore(memory)
+        self.trajectory = Trajectory(self.model, self.steps, self.threads, self.store)
         self.leaf_values, self.adjoints = adjoints(
             self.trajectory, self.increments, self.leaves, adjoint
         )
@@ -259,7 +274,7 @@ class Run:
             here, found = system.in_space(point.u), []
             for column in range(len(self.leaves)):
                 force = np.ascontiguousarray(system.in_space(adjoint.forces[:, column]))
-                weights = adjoint.histories[column] if adjoint.histories else []
+                weights = list(adjoint.histories[column]) if adjoint.histories else []
                 each = system.core.differentiate(here, system.nlgeom, force, weights, [what])
                 found.append(parameter.gather(trajectory, each))
             rows = rows + np.stack(found)
@@ -299,6 +314,8 @@ class ValueAndGradient:
         Sizes of the parameters, over which the model is smooth.
     options : dict
         Options of :func:`corota.solve`.
+    memory : float or None
+        As of :func:`gradient`.
     runs : int
         Analyses so far.
     """
@@ -308,6 +325,7 @@ class ValueAndGradient:
     scalar: bool
     sizes: Floats | None = None
     options: dict[str, Any] = field(default_factory=dict)
+    memory: float | None = None
     runs: int = 0
     results: Results | None = field(default=None, repr=False)
 
@@ -325,7 +343,7 @@ class ValueAndGradient:
         results = solve(self.build(at.copy()), fields=False, **self.options)
         self.runs += 1
         self.results = results
-        run = Run(results, self.measures)
+        run = Run(results, self.measures, memory=self.memory)
         columns = []
         for k, size in enumerate(self._sizes(at)):
 
@@ -352,6 +370,7 @@ def value_and_grad(
     measure: Measure | Sequence[Measure],
     *,
     sizes: ArrayLike | None = None,
+    memory: float | None = None,
     **options: Any,
 ) -> ValueAndGradient:
     """Make a function that gives the value of a measure and its exact gradient by parameters.
@@ -368,6 +387,8 @@ def value_and_grad(
     measure : Measure or sequence of Measure
     sizes : array_like, optional
         Sizes of the parameters over which the model is smooth; by default their magnitudes.
+    memory : float, optional
+        As of :func:`gradient`.
     **options
         Of :func:`corota.solve`.
 
@@ -394,7 +415,7 @@ def value_and_grad(
     scalar = isinstance(measure, Measure)
     measures = [measure] if isinstance(measure, Measure) else list(measure)
     own = None if sizes is None else np.asarray(sizes, dtype=float)
-    return ValueAndGradient(build, measures, scalar, own, dict(options))
+    return ValueAndGradient(build, measures, scalar, own, dict(options), memory)
 
 
 __all__ = ["Run", "ValueAndGradient", "gradient", "value_and_grad"]

@@ -18,6 +18,7 @@ from corota.analysis.linear.solvers import make_solver
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.errors import InputError, UnsupportedError
 from corota.gradients.motion import Motion, refuse_motion
+from corota.gradients.store import HistoryStore
 from corota.gradients.surfaces import Surfaces, add_forces, find, refuse_surfaces, slide
 from corota.model.steps import Dynamic
 from corota.model.user_material import UserMaterial
@@ -56,7 +57,7 @@ class Increment:
         Step time of its loads; along a path the load factor times the period.
     factor : float
     by_node : ndarray, shape (n_nodes, 3)
-    histories : list of ndarray
+    histories : sequence of ndarray
         Of the elements of each block before the increment; empty where no law has any.
     begun : float
         Step time at which it began.
@@ -67,7 +68,7 @@ class Increment:
     time: float
     factor: float
     by_node: Floats
-    histories: list[Floats] = field(default_factory=list)
+    histories: Sequence[Floats] = field(default_factory=list)
     begun: float = 0.0
     #: Whether its load factor was an unknown, and whether it is the last of its step.
     along: bool = False
@@ -182,6 +183,8 @@ class Trajectory:
     steps : sequence of Step
         With large rotations as in the run.
     threads : int
+    store : HistoryStore, optional
+        Keeps the histories of the increments.
 
     Raises
     ------
@@ -189,8 +192,15 @@ class Trajectory:
         If the model has a feature whose derivative is not included.
     """
 
-    def __init__(self, model: Model, steps: Sequence[Step], threads: int = 1) -> None:
+    def __init__(
+        self,
+        model: Model,
+        steps: Sequence[Step],
+        threads: int = 1,
+        store: HistoryStore | None = None,
+    ) -> None:
         self.model, self.steps, self.threads = model, list(steps), threads
+        self.store = HistoryStore() if store is None else store
         refuse(model)
         refuse_motion(model, steps)
         #: Inertia and damping in a dynamic step.
@@ -238,9 +248,9 @@ class Trajectory:
                     )
             if self.remembers:
                 if given:
-                    system.core.set_histories(increment.histories)
+                    system.core.set_histories(list(increment.histories))
                 else:
-                    increment.histories = system.core.histories(False)
+                    increment.histories = self.store.keep(system.core.histories(False))
             point = self.point(increment)
             u, at = point.u, point.at
             if system.n_multipliers:
@@ -303,7 +313,7 @@ class Trajectory:
 
     def at_step(self, increments: Sequence[Increment], step: int) -> Trajectory:
         """Equations of the same model with the loads of one of the steps."""
-        other = Trajectory(self.model, self.steps, self.threads)
+        other = Trajectory(self.model, self.steps, self.threads, self.store)
         ends = {i.step: i for i in increments if i.step < step}
         first = next(i for i in increments if i.step == step)
         for point in other.walk([*ends.values(), first], given=True):
