@@ -73,18 +73,6 @@ def test_velocity_of_a_static_step() -> None:
         ct.gradient(results, gradients.Velocity("right", "y"), MODULUS)
 
 
-def test_friction_over_several_steps() -> None:
-    lower = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1)
-    both = ct.mesh.assembly(a=lower, b=ct.mesh.move(lower, (0.0, 1.0)))
-    model = ct.Model(both)
-    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
-    model.fix("a.bottom")
-    model.fix("b.top", y=-0.01)
-    model.contact("b.bottom", "a.top", friction=0.3)
-    model.steps = [ct.Static(), ct.Static()]
-    refused(model, gradients.Reaction("b.top", "y"), MODULUS, "friction are those of one")
-
-
 def test_python_materials() -> None:
     moduli = np.diag([1000.0, 1000.0, 500.0])
 

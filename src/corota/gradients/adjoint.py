@@ -227,10 +227,6 @@ def _sliding(
     wanted: bool,
 ) -> list[Adjoint]:
     """Adjoint states with friction, backwards, on the states of one way forward."""
-    if len({increment.step for increment in increments}) > 1:
-        raise UnsupportedError(
-            "gradients with friction are those of one static step; join steps by amplitudes"
-        )
     system, count = trajectory.system, len(values)
     points: list[Point] = []
     for point in trajectory.walk(increments):
@@ -244,8 +240,13 @@ def _sliding(
     later = np.zeros((system.n_dofs, count))
     final = max(at_frame)
     points = [point for point in points if point.increment.frame <= final]
+    step = increments[-1].step
     for k in range(len(points) - 1, -1, -1):
         point = points[k]
+        if point.increment.step != step:
+            step = point.increment.step
+            trajectory = trajectory.at_step(increments, step)
+            system = trajectory.system
         _return_to(trajectory, points, k)
         rhs, moved = -later, np.zeros((system.n_dofs, count))
         own = at_frame.get(point.increment.frame, [])
