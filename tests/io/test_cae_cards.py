@@ -340,3 +340,64 @@ def test_real_and_imaginary_loads_are_written_as_load_cases(tmp_path: Path) -> N
             tmp_path,
             text.replace("*FREQUENCY\n3\n", "*FREQUENCY\n3\n*CLOAD, IMAGINARY\nOUT, 2, 1.\n"),
         )
+
+
+LOAD_CASES = """*NODE, NSET=NALL
+1, 0., 0.
+2, 2., 0.
+3, 2., 1.
+4, 0., 1.
+*ELEMENT, TYPE=CPS4, ELSET=EA
+1, 1, 2, 3, 4
+*MATERIAL, NAME=M
+*ELASTIC
+1000., .3
+*DENSITY
+1.
+{law}*SOLID SECTION, ELSET=EA, MATERIAL=M
+1.
+*BOUNDARY
+1, 1, 2
+4, 1
+"""
+CASES = (
+    "*CLOAD\n2, 1, 1.\n3, 1, 1.\n",
+    "*DLOAD\nEA, GRAV, 5., 0., -1.\n",
+    "*BOUNDARY\n2, 1, 1, .01\n3, 1, 1, .01\n",
+    "*CLOAD\n2, 2, -1.\n",
+)
+
+
+def load_case(loads: str) -> str:
+    return f"*STEP, PERTURBATION\n*STATIC\n{loads}*END STEP\n"
+
+
+def test_static_perturbations_are_load_cases(tmp_path: Path) -> None:
+    """Each is the linear response to its own loads and supports, whatever was before."""
+    head = LOAD_CASES.format(law="")
+    results = ct.solve(read(tmp_path, head + "".join(map(load_case, CASES))), threads=1)
+    for number, loads in enumerate(CASES, start=1):
+        alone = ct.solve(read(tmp_path, head + load_case(loads)), threads=1).frames[-1]
+        last = [frame for frame in results.frames if frame.step == number][-1]
+        assert np.allclose(last.U, alone.U, rtol=1e-9, atol=1e-12)
+        assert np.allclose(last.RF, alone.RF, rtol=1e-9, atol=1e-9)
+    modes = "*STEP, PERTURBATION\n*FREQUENCY\n2\n*END STEP\n"
+    loaded = ct.solve(read(tmp_path, head + load_case(CASES[0]) + modes), threads=1)
+    plain = ct.solve(read(tmp_path, head + modes), threads=1)
+    np.testing.assert_allclose(loaded.modes[-1].factors, plain.modes[-1].factors, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("law", "steps", "said"),
+    [
+        ("", "*STEP\n*STATIC\n*CLOAD\n2, 1, 1.\n*END STEP\n" + load_case(CASES[0]), "loaded state"),
+        ("", load_case(CASES[0]) + "*STEP\n*STATIC\n*END STEP\n", "another deck"),
+        ("", load_case(CASES[0]) + "*STEP\n*DYNAMIC\n.1, .1\n*END STEP\n", "another deck"),
+        ("*PLASTIC\n1., 0.\n2., .1\n", 2 * load_case(CASES[0]), "not linear"),
+    ],
+)
+def test_perturbations_of_other_states_are_refused(
+    tmp_path: Path, law: str, steps: str, said: str
+) -> None:
+    with pytest.raises(ct.DeckError, match=said):
+        read(tmp_path, LOAD_CASES.format(law=law) + steps)

@@ -268,3 +268,36 @@ def test_fields_that_no_data_depend_on_are_noted(tmp_path: Path) -> None:
     )
     model = read(tmp_path, text)
     assert sum("field variables" in note for note in model.notes) == 2
+
+
+@pytest.mark.parametrize(
+    "table", ["10., 0.\n20., .1\n", "10., 0.\n12., .02\n20., .1\n", "10., 0.\n"]
+)
+@pytest.mark.parametrize("strain", [0.0, 0.04, 0.3])
+def test_initial_hardening_begins_further_on_the_curve(
+    tmp_path: Path, table: str, strain: float
+) -> None:
+    """A bar drawn by .05 per length: s = sy(p0 + p) with s / E + p = .05, in one increment."""
+    text = BAR.format(rho=1.0).replace("*DENSITY", f"*PLASTIC\n{table}*DENSITY")
+    text = text.replace("CPE4", "CPS4R") + (
+        f"*INITIAL CONDITIONS, TYPE=HARDENING\nAB, {strain}\n*BOUNDARY\n1, 1, 2\n4, 1\n"
+        "*STEP\n*STATIC\n*BOUNDARY\n3, 1, 1, .15\n6, 1, 1, .15\n*END STEP\n"
+    )
+    stresses, strains = np.array(
+        [[float(x) for x in row.split(",")] for row in table.splitlines()]
+    ).T
+    low, high = 0.0, 0.05
+    for _ in range(60):
+        p = 0.5 * (low + high)
+        over = 1000.0 * (0.05 - p) > np.interp(strain + p, strains, stresses)
+        low, high = (p, high) if over else (low, p)
+    deck = tmp_path / "deck.inp"
+    deck.write_text(text)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        frame = ct.solve(ct.read(deck, as_written=True), threads=1).frames[-1]
+    assert -frame.RF[[0, 3], 0].sum() == pytest.approx(1000.0 * (0.05 - p), rel=1e-6)
+    kinematic = text.replace("*PLASTIC", "*PLASTIC, HARDENING=KINEMATIC")
+    if strain and len(stresses) == 2:
+        with pytest.raises(ct.DeckError, match="isotropic hardening"):
+            read(tmp_path, kinematic)

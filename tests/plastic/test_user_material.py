@@ -162,3 +162,30 @@ def test_energy_momentum_tends_to_that_of_the_core(element: str) -> None:
         assert theirs.fields[0].values["PEEQ"].max() > 1e-3
         apart.append(np.abs(ours.U - theirs.U).max() / np.abs(theirs.U).max())
     assert apart[1] < min(1e-3, apart[0] / 3.0)
+
+
+@pytest.mark.parametrize(
+    ("plane", "name", "given"),
+    [
+        ("stress", "strain_zz", False),
+        ("strain", "stress_zz", False),
+        ("stress", "strain_zz", True),
+        ("strain", "stress_zz", True),
+    ],
+)
+def test_a_law_says_what_it_leaves_out_of_the_normal_direction(
+    plane: str, name: str, given: bool
+) -> None:
+    """Its stress or strain there was shown as 0 in silence."""
+    c = np.diag([1000.0, 1000.0, 500.0])
+
+    def spring(strain, state, plane):
+        extra = {name: np.zeros(strain.shape[:2])} if given else {}
+        return strain @ c, np.broadcast_to(c, (*strain.shape, 3)), state, extra
+
+    model = ct.Model(ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1))
+    model.section("all", element="Q4", material=ct.UserMaterial(spring), plane=plane)
+    model.fix("left")
+    model.fix("right", x=0.02, y=None)
+    notes = ct.solve(model, ct.Static(nlgeom=False), threads=1).notes
+    assert any(name in note for note in notes) == (not given)

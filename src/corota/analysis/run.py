@@ -38,6 +38,7 @@ from corota.errors import (
     memory_errors,
 )
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
+from corota.model.sections import thickness_notes
 from corota.model.steps import in_force
 from corota.results.results import Frame, Results
 
@@ -415,6 +416,7 @@ class Analysis:
         state.energies.begin(step, state.at.internal)
         if number == 1:
             state.notes += [note for term in system.terms for note in term.notes]
+            state.notes += thickness_notes(self.model.sections)
             if not step.starts_in_motion:
                 self._save(number, state, 0, 0.0, {})
 

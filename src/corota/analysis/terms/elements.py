@@ -50,6 +50,11 @@ class Elements(Term):
         self.begun = self.seen = self.reached = 0.0
         self.lasting = self.passes = False
 
+    @property
+    def notes(self) -> list[str]:  # type: ignore[override]
+        """What materials in Python leave out."""
+        return self.user.notes
+
     def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
         """Start a step at a total time."""
         self.begun, self.seen, self.reached = time, 0.0, 0.0

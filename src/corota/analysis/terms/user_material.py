@@ -34,6 +34,13 @@ MAX_CALLS = 30
 NO_NUMBER = "the material function returned a stress or tangent that is not a number"
 
 
+#: By plane: what a function may return of the normal direction, its output, and what needs it.
+_ACROSS = {
+    "stress": ("strain_zz", "strain E33", ""),
+    "strain": ("stress_zz", "stress S33", ", also in MISES and pressure"),
+}
+
+
 @dataclass
 class _Block:
     """A block with a user-defined material."""
@@ -55,6 +62,8 @@ class _Block:
     # Equivalent plastic strain, where the function gives one.
     plastic: Floats | float = 0.0
     plastic_trial: Floats | float = 0.0
+    #: What the function gives of the direction normal to the plane; None before a call.
+    across: set[str] | None = None
 
     def __post_init__(self) -> None:
         self.trial = self.committed
@@ -89,6 +98,20 @@ class UserBlocks:
                         material.start(*shape),
                     )
                 )
+
+    @property
+    def notes(self) -> list[str]:
+        """What functions leave out of the direction normal to the plane, once for each law."""
+        found = {}
+        for block in self.blocks:
+            name, zero, also = _ACROSS[block.plane]
+            if block.across is not None and name not in block.across:
+                called = getattr(block.material.function, "__name__", "the function")
+                found[called, name] = (
+                    f"material function {called!r} returns no {name} in plane {block.plane}: "
+                    f"{zero} is shown as 0{also}; return it in a dict as fourth item"
+                )
+        return list(found.values())
 
     def assemble(
         self, u: Floats, nlgeom: bool, assemble: Callable[[], None], between: bool = False
@@ -147,6 +170,7 @@ class UserBlocks:
         symmetric = 0.5 * (tangent + np.swapaxes(tangent, -1, -2))
         rows, columns = np.triu_indices(3)
         values[..., 6:12] = symmetric[..., rows, columns]
+        block.across = extra.keys() & {"strain_zz", "stress_zz"}
         for member, name in enumerate(("strain_zz", "stress_zz", "energy", "PEEQ"), start=12):
             if name in extra:
                 values[..., member] = extra[name]

@@ -93,6 +93,8 @@ class Deck:
     imperfections: list[ImperfectionDraft] = field(default_factory=list)
     embedded: list[EmbeddedDraft] = field(default_factory=list)
     mass_scalings: list[MassScalingDraft] = field(default_factory=list)
+    #: Lines of initial equivalent plastic strain.
+    hardenings: list[Draft] = field(default_factory=list)
     #: Amplitudes whose values are those of the loads.
     absolute: set[str] = field(default_factory=set)
     velocities: list[Draft] = field(default_factory=list)

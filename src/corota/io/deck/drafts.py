@@ -251,6 +251,8 @@ class StepDraft:
     loads: list[Draft] = field(default_factory=list)
     new_supports: bool = False
     new_loads: set[LoadKind] = field(default_factory=set)
+    #: Whether it is a static load case of the structure without load.
+    perturbs: bool = False
     #: Kinds of conditions that cards of the step gave so far.
     said: set[str] = field(default_factory=set)
     #: Motions of all supports in a direction.

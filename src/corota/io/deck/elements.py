@@ -82,7 +82,8 @@ ASK = (
 
 
 def _displacement(element: str) -> str:
-    return f"is taken as {element}, which has no pressure or stress of its own"
+    large = " (Q4S at large strain)" if element == "Q4I" else ""
+    return f"is taken as {element}{large}, which has no pressure or stress of its own"
 
 
 ELEMENTS: dict[str, DeckElement] = {

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
 from corota.errors import InputError
+from corota.io.deck.build.change_sections import change_sections
 from corota.mesh.kinds import KINDS
 from corota.mesh.parts import cells_of
 from corota.model.material_table import MaterialTable
@@ -51,7 +51,7 @@ def scale_masses(targets: Targets) -> Floats:
             if draft.kind == "UNIFORM":
                 ratio = np.full(len(cells), ratio.max())
             factor[cells] *= np.maximum(ratio, 1.0) if draft.kind == "BELOWMIN" else ratio
-    _scale(targets, factor)
+    change_sections(model, factor, 1.0, _heavier)
     heavier = factor[factor != 1.0]
     if len(heavier):
         deck.note(
@@ -74,25 +74,14 @@ def _cells(targets: Targets, draft: MassScalingDraft) -> Ints | None:
     return None if found is None else found.cells
 
 
-def _scale(targets: Targets, factor: Floats) -> None:
-    """Split sections by the factor of their cells."""
-    model, sections = targets.model, []
-    for section in model.sections:
-        cells = cells_of(model.mesh, section.cells)
-        for value in distinct(factor[cells]).tolist():
-            mine = cells[factor[cells] == value]
-            if value == 1.0 or section.element.startswith("SPRING"):
-                whole = len(mine) == len(cells)
-                sections.append(section if whole else replace(section, cells=mine))
-                continue
-            if isinstance(section.material, MaterialTable):
-                raise InputError(
-                    f"the mass of material {section.material.name}, which depends on the "
-                    "temperature, is not scaled: scale its *DENSITY"
-                )
-            material = replace(section.material, rho=section.material.rho * value)
-            sections.append(replace(section, cells=mine, material=material))
-    model.sections = sections
+def _heavier(section: Section, factor: float) -> Section:
+    if isinstance(section.material, MaterialTable):
+        raise InputError(
+            f"the mass of material {section.material.name}, which depends on the temperature, is "
+            "not scaled: scale its *DENSITY"
+        )
+    material = replace(section.material, rho=section.material.rho * factor)
+    return replace(section, material=material)
 
 
 def _increments(targets: Targets, cells: Ints) -> Floats:

@@ -36,6 +36,7 @@ build_contacts = lazy("corota.io.deck.build.contact:build_contacts")
 build_imperfections = lazy("corota.io.deck.cards.imperfection:build_imperfections")
 build_initial = lazy("corota.io.deck.cards.thermal:build_initial")
 build_tie = lazy("corota.io.deck.build.ties:build_tie")
+harden = lazy("corota.io.deck.cards.hardening:harden")
 scale_masses = lazy("corota.io.deck.build.mass_scaling:scale_masses")
 pretension_builder = lazy("corota.io.deck.build.pretension:PretensionBuilder")
 
@@ -72,6 +73,8 @@ class ModelBuilder:
         model, deck = self.model, self.deck
         if deck.nonstructural:
             add_nonstructural(targets)
+        if deck.hardenings:
+            harden(targets)
         if deck.mass_scalings:
             try:
                 targets.mass_factor = scale_masses(targets)
@@ -111,6 +114,8 @@ class ModelBuilder:
                 )
         if deck.initial:
             build_initial(deck, model, targets.nodes, targets.cells_of)
+        if sum(step.perturbs for step in deck.steps) > 1:
+            self._check_linear()
         for draft in deck.steps:
             step = self._step(draft)
             if step is not None:
@@ -125,6 +130,19 @@ class ModelBuilder:
         self._unused()
         model.notes += deck.notes
         return model
+
+    def _check_linear(self) -> None:
+        """Refuse load cases of structures that do not answer in proportion."""
+        what = ""
+        if self.model.contacts:
+            what = "contact"
+        for section in self.model.sections:
+            if section.material.remembers or section.material.flows or section.table:
+                what = "a material or spring that is not linear"
+        if what:
+            card = next(s.card for s in self.deck.steps if s.perturbs)
+            text = f"load cases (PERTURBATION) of a model with {what} are not part of this version"
+            self.deck.error(card, card.at("PERTURBATION"), text, hint="give each a deck of its own")
 
     def _unused(self) -> None:
         deck = self.deck

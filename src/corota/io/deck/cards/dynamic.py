@@ -12,6 +12,7 @@ from corota.io.deck.cards.thermal import initial_stress, initial_temperature
 from corota.io.deck.cards.tie import parameter_row
 from corota.io.deck.drafts import Draft
 from corota.io.deck.lexer import key
+from corota.lazy import lazy
 from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
 
 if TYPE_CHECKING:
@@ -339,6 +340,7 @@ INITIAL = {
     "VELOCITY": _velocity,
     "ROTATINGVELOCITY": _rotating_velocity,
     "FIELD": _field,
+    "HARDENING": lazy("corota.io.deck.cards.hardening:initial_hardening"),
     "TEMPERATURE": initial_temperature,
     "STRESS": initial_stress,
 }

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from corota.io.deck.drafts import StepDraft
+from corota.model.steps import Dynamic
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
@@ -60,16 +61,40 @@ def end_step(deck: Deck, card: Card) -> None:
             hint="put *STATIC after *STEP",
         )
     elif deck.step.card.has("PERTURBATION") and deck.step.make is None:
-        if deck.steps[0] is deck.step:
-            deck.note(f"{deck.step.card.where}: PERTURBATION of the first step: it is linear")
-        else:
-            deck.error(
-                deck.step.card,
-                deck.step.card.at("PERTURBATION"),
-                "a linear perturbation of a loaded state is not part of this version",
-                hint="leave PERTURBATION out: loads then continue from the step before",
-            )
+        _perturb(deck, deck.step)
+    elif deck.step.make in (None, Dynamic) and any(s.perturbs for s in deck.steps):
+        deck.error(
+            deck.step.card,
+            deck.step.card.where,
+            "a step after a linear perturbation starts from the state before that one, which is "
+            "not part of this version",
+            hint="put it into another deck",
+        )
     deck.step = None
+
+
+def _perturb(deck: Deck, now: StepDraft) -> None:
+    """Make a static step with ``PERTURBATION`` a load case of the structure without load.
+
+    Each has its own loads and supports, and those of the model. As everything is linear, it does
+    not matter that it starts from the load case before.
+    """
+    if any(not s.perturbs and s.make is None for s in deck.steps if s is not now):
+        deck.error(
+            now.card,
+            now.card.at("PERTURBATION"),
+            "a linear perturbation of a loaded state is not part of this version",
+            hint="leave PERTURBATION out: loads then continue from the step before",
+        )
+        return
+    now.perturbs = True
+    now.nlgeom = False
+    now.new_loads |= {"force", "distributed", "temperature"}
+    if not now.new_supports:
+        now.new_supports = len(deck.steps) > 1
+        now.supports = (deck.supports if now.new_supports else []) + now.supports
+    which = "it is linear" if len(deck.steps) == 1 else "its loads act alone"
+    deck.note(f"{now.card.where}: PERTURBATION: {which}")
 
 
 def static(deck: Deck, card: Card) -> None:
@@ -150,7 +175,8 @@ def keeps_preload(deck: Deck, card: Card, now: StepDraft) -> bool:
 
     As in CalculiX, ``*STEP, PERTURBATION`` requests it.
     """
-    kept = now.card.has("PERTURBATION")
+    # Linear load cases leave the structure as it was.
+    kept = now.card.has("PERTURBATION") and not any(step.perturbs for step in deck.steps)
     if len(deck.steps) > 1 and not kept:
         deck.notes.append(
             f"{card.where}: *{card.keyword} is about the structure without load, as in CalculiX; "

@@ -1,0 +1,79 @@
+"""Initial equivalent plastic strain: yield curves that begin further on."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.io.deck.build.change_sections import change_sections
+from corota.io.deck.drafts import Draft
+from corota.model.plasticity import Mises, Voce
+
+if TYPE_CHECKING:
+    from corota.io.deck.build.targets import Targets
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.lexer import Card
+    from corota.model.sections import Section
+
+
+def initial_hardening(deck: Deck, card: Card) -> None:
+    """Element or set, equivalent plastic strain; back-stresses must be zero."""
+    for row in card.rows():
+        strain = deck.real(card, row, 1, "the equivalent plastic strain")
+        back = [deck.real(card, row, i, "the back-stress", 0.0) for i in range(2, len(row))]
+        if strain is None or None in back:
+            return
+        if any(back):
+            deck.row_error(card, row, 2, "initial back-stresses are not part of this version")
+        elif strain < 0.0:
+            deck.row_error(card, row, 1, f"it must be >= 0, not {strain:g}")
+        elif not row.get(0):
+            deck.row_error(card, row, 0, "an element number or a set is missing")
+        else:
+            deck.hardenings.append(Draft("hardening", card, row, row.get(0), (strain,)))
+
+
+def harden(targets: Targets) -> None:
+    """Give cells with an initial plastic strain the yield curve from there on."""
+    deck, strain = targets.deck, np.zeros(targets.mesh.n_cells)
+    for draft in deck.hardenings:
+        found = targets.cells_of(draft)
+        if found is not None:
+            strain[found.cells] = draft.value[0]
+    card = deck.hardenings[0].card
+    try:
+        change_sections(targets.model, strain, 0.0, _hardened)
+    except InputError as error:
+        deck.error(card, card.where, error.message)
+    deck.note(f"{card.where}: {card.spelled}, TYPE=HARDENING: PEEQ is without the initial one")
+
+
+def _hardened(section: Section, strain: float) -> Section:
+    material = section.material
+    simple = isinstance(material, Mises) and not material.kinematic and not material.chaboche
+    if not simple or material.rate is not None:
+        raise InputError(
+            f"initial hardening of material {material.name or section.element} needs *PLASTIC with "
+            "isotropic hardening, without rate or temperature"
+        )
+    assert isinstance(material, Mises)
+    if material.yield_curve is not None:
+        stress, plastic = np.array(material.yield_curve, float).T
+        first = float(np.interp(strain, plastic, stress))
+        later = plastic > strain
+        curve = [(first, 0.0)]
+        curve += [(s, p - strain) for s, p in zip(stress[later], plastic[later], strict=True)]
+        return replace(section, material=replace(material, yield_curve=curve, rows=()))
+    start, law = float(material.yield_stress or 0.0), material.isotropic
+    if isinstance(law, Voce):
+        left = math.exp(-law.b * strain)
+        start += law.Q * (1.0 - left)
+        law = replace(law, Q=law.Q * left)
+    else:
+        start += law * strain
+    return replace(section, material=replace(material, yield_stress=start, isotropic=law))
