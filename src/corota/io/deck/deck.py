@@ -25,6 +25,7 @@ from corota.io.deck.drafts import (
     NonstructuralDraft,
     PairDraft,
     PretensionDraft,
+    ReleaseDraft,
     Scope,
     StartDraft,
     StepDraft,
@@ -93,6 +94,7 @@ class Deck:
     imperfections: list[ImperfectionDraft] = field(default_factory=list)
     embedded: list[EmbeddedDraft] = field(default_factory=list)
     mass_scalings: list[MassScalingDraft] = field(default_factory=list)
+    releases: list[ReleaseDraft] = field(default_factory=list)
     #: Lines of initial equivalent plastic strain.
     hardenings: list[Draft] = field(default_factory=list)
     #: Amplitudes whose values are those of the loads.

@@ -349,6 +349,16 @@ class NonstructuralDraft:
 
 
 @dataclass(eq=False, repr=False)
+class ReleaseDraft:
+    """A line of ``*RELEASE``: the end (0 or -1) of beams that carries no moment."""
+
+    card: Card
+    row: Row
+    scope: Scope
+    end: int
+
+
+@dataclass(eq=False, repr=False)
 class EmbeddedDraft:
     """One ``*EMBEDDED ELEMENT``: sets of elements whose nodes follow those of a host."""
 
@@ -539,6 +549,7 @@ __all__ = [
     "PairDraft",
     "PlasticDraft",
     "PretensionDraft",
+    "ReleaseDraft",
     "Scope",
     "SectionDraft",
     "StartDraft",

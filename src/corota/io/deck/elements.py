@@ -133,7 +133,7 @@ DRILLING = tuple(name for name in OWN if elements.find(name).drilling)
 LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3, "T2D2H": 2, "T3D2H": 2, "R2D2": 2}
 
 #: Point masses, rotary inertias, dashpots and gaps, with their number of nodes.
-ATTACHED = {"MASS": 1, "ROTARYI": 1, "DASHPOTA": 2, "DASHPOT1": 1, "GAPUNI": 2}
+ATTACHED = {"MASS": 1, "ROTARYI": 1, "DASHPOTA": 2, "DASHPOT1": 1, "GAPUNI": 2, "CONN2D2": 2}
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ UNSUPPORTED_FAMILIES: dict[str, str] = {
     "DC": "heat conduction is not part of this version; give temperatures by *TEMPERATURE",
     "COH": "cohesive elements are not part of this version; join the parts by *TIE",
     "CIN": "infinite elements are not part of this version; fix the outer nodes by *BOUNDARY",
-    "CONN": "connectors are not part of this version; use *MPC, *EQUATION or *COUPLING",
+    "CONN": "of connectors this version has CONN2D2; use *MPC, *EQUATION or *COUPLING",
     "CPEG": "generalized plane strain is not part of this version; use CPE*",
     "R3D": _SOLID,
     "RAX": "give a rigid ring as *SURFACE, TYPE=SEGMENTS, or as *RIGID BODY of CAX* elements",

@@ -227,6 +227,10 @@ _TABLE: dict[str, Keyword] = {
         card("material.nonstructural_mass"), "ELSET UNITS DISTRIBUTION", place="model"
     ),
     "DASHPOT": Keyword(card("attachments.dashpot"), "ELSET", place="model"),
+    "CONNECTOR SECTION": Keyword(
+        card("attachments.connector_section"), "ELSET", "CONTROLS", place="model"
+    ),
+    "RELEASE": Keyword(card("release.release"), place="model"),
     "GAP": Keyword(card("attachments.gap"), "ELSET", place="model"),
     "INITIAL CONDITIONS": Keyword(
         card("dynamic.initial_conditions"), "TYPE", "VARIABLE", place="model"

@@ -139,7 +139,10 @@ UNSUPPORTED: dict[str, str] = {
     "CHANGEMATERIAL": "materials cannot change between steps",
     "DISTRIBUTION": "values given by element are not part of this version",
     "NORMAL": "planar elements have no normals of their own",
-    "CONNECTORSECTION": "use *MPC, *EQUATION or *COUPLING",
+    **dict.fromkeys(
+        ("CONNECTORBEHAVIOR", "CONNECTORELASTICITY", "CONNECTORDAMPING", "CONNECTORSTOP"),
+        "give springs by *SPRING, dampers by *DASHPOT, stops by *GAP",
+    ),
     "COHESIVESECTION": "cohesive elements are not part of this version; join the parts by *TIE",
     "COHESIVEBEHAVIOR": "surfaces with adhesion are not part of this version; use *TIE",
     "GEOSTATIC": "use *STATIC with *INITIAL CONDITIONS, TYPE=STRESS",
@@ -147,7 +150,6 @@ UNSUPPORTED: dict[str, str] = {
     "INERTIARELIEF": "fix the body by *BOUNDARY in three dofs",
     "BEAMSECTIONGENERATE": "give the numbers by *BEAM GENERAL SECTION",
     "FASTENER": "use *MPC or *COUPLING",
-    "RELEASE": "join only the displacements of two nodes by *MPC, PIN",
     "VALUESATINFINITY": "it belongs to fluid dynamics",
 }
 
@@ -178,6 +180,7 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
     ("FRICTION", "ANISOTROPIC"): "friction has one coefficient",
     ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",
+    ("CONNECTORSECTION", "BEHAVIOR"): "give springs by *SPRING, dampers by *DASHPOT",
     ("CHANGEFRICTION", "AMPLITUDE"): "the change is linear over the step (RAMP), or at once",
     ("CHANGEFRICTION", "NSET"): "the friction of all nodes of an interaction is the same",
     ("FRICTION", "USER"): "no user subroutine is called",

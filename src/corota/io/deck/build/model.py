@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 # Parts that few decks have.
 add_nonstructural = lazy("corota.io.deck.build.nonstructural:add_nonstructural")
 add_embedded = lazy("corota.io.deck.cards.embedded:add_embedded")
+add_releases = lazy("corota.io.deck.cards.release:add_releases")
 base_supports = lazy("corota.io.deck.build.base_motion:base_supports")
 build_attachments = lazy("corota.io.deck.cards.attachments:build_attachments")
 build_contacts = lazy("corota.io.deck.build.contact:build_contacts")
@@ -46,6 +47,8 @@ class ModelBuilder:
 
     def __init__(self, deck: Deck, name: str) -> None:
         self.deck = deck
+        if deck.releases:
+            add_releases(deck)
         self.meshes = MeshBuilder(deck)
         self.model = Model(self.meshes.build(), name)
         self.mesh = self.model.mesh
@@ -101,9 +104,9 @@ class ModelBuilder:
         model.amplitudes = {a.name: a for a in deck.amplitudes.values()}
         if pretension is not None:
             pretension.join(targets.nodes, targets.rotating)
-        model.supports += self.loads.supports(deck.supports)
         if deck.attached:
-            build_attachments(deck, model, targets.nodes)
+            build_attachments(deck, model, targets.nodes, targets.rotating)
+        model.supports += self.loads.supports(deck.supports)
         for item in deck.velocities:
             nodes = targets.nodes(item)
             if nodes is not None:

@@ -14,10 +14,13 @@ from corota.io.deck.drafts import AttachedDraft, Draft
 from corota.io.deck.elements import ATTACHED
 from corota.io.deck.lexer import key
 from corota.model.attachments import Dashpot, PointMass
+from corota.model.constraints import Coupling, Equation
 from corota.model.contact import gap_element
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from numpy.typing import NDArray
 
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card
@@ -33,11 +36,21 @@ CARDS = {
     "DASHPOTA": "DASHPOT",
     "DASHPOT1": "DASHPOT",
     "GAPUNI": "GAP",
+    "CONN2D2": "CONNECTOR SECTION",
+}
+#: Connections of two nodes in the plane, and the dofs that they share; BEAM is rigid.
+CONNECTIONS = {"JOIN": (0, 1), "HINGE": (0, 1), "WELD": (0, 1, 2), "BEAM": ()}
+_OTHERS = {
+    "LINK": "use a truss (T2D2) of a stiff material",
+    "AXIAL": "use SPRINGA with *SPRING, DASHPOTA with *DASHPOT",
+    "CARTESIAN": "use SPRING2 with *SPRING",
+    "SLOT": "use *MPC, SLIDER",
+    "TRANSLATOR": "use *MPC, SLIDER",
 }
 
 
 def elements(deck: Deck, card: Card, type_: str) -> None:
-    """``*ELEMENT, TYPE=MASS``, ``ROTARYI``, ``DASHPOTA``, ``DASHPOT1`` or ``GAPUNI``: label, nodes.
+    """``*ELEMENT, TYPE=`` one of :data:`CARDS`: label, nodes.
 
     The set names them.
     """
@@ -142,6 +155,64 @@ def gap(deck: Deck, card: Card) -> None:
     _assign(deck, card, "GAPUNI", (clearance, x, y))
 
 
+def connector_section(deck: Deck, card: Card) -> None:
+    """``*CONNECTOR SECTION, ELSET=``: JOIN, HINGE, WELD or BEAM."""
+    name, rows = deck.required(card, "ELSET"), list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: the kind of the connection")
+        return
+    kind, turns = key(rows[0].get(0)), key(rows[0].get(1))
+    if kind == "JOIN" and turns == "ALIGN":
+        kind, turns = "WELD", ""
+    if kind not in CONNECTIONS or turns not in ("", "REVOLUTE"):
+        said = rows[0].get(0) if kind not in CONNECTIONS else rows[0].get(1)
+        hint = f"there are {', '.join(CONNECTIONS)} and JOIN, ALIGN"
+        text = f"connection {said!r} is not part of this version"
+        deck.row_error(card, rows[0], 0, text, _OTHERS.get(kind, hint))
+    if name:
+        place = list(CONNECTIONS).index(kind) if kind in CONNECTIONS else -1
+        _assign(deck, card, "CONN2D2", (float(place),))
+
+
+def _connect(
+    deck: Deck,
+    model: Model,
+    draft: AttachedDraft,
+    nodes: list[int],
+    find: Find,
+    rotating: NDArray[np.bool_],
+) -> None:
+    """Constraints of one connector."""
+    if draft.value[0] < 0.0:
+        return  # the kind is refused already
+    kind, where = list(CONNECTIONS)[int(draft.value[0])], draft.card.where
+    first, second = nodes
+    drafts = [*deck.supports, *(d for step in deck.steps for d in step.supports)]
+    held = (find(d) for d in drafts)
+    if any(n is not None and first in model.mesh.node_indices(n) for n in held):
+        first, second = second, first  # a node that supports hold leads
+    if kind == "BEAM":
+        model.constraints.append(Coupling(np.array([first]), second, where=where))
+        rotating[second] = True
+        return
+    if kind == "WELD" and rotating[nodes].any():
+        rotating[nodes] = True
+    away = float(np.hypot(*(model.mesh.points[second] - model.mesh.points[first])))
+    if away > 1e-6 * float(np.ptp(model.mesh.points, axis=0).max()):
+        labels = model.mesh.node_labels[nodes]
+        deck.error(
+            draft.card,
+            where,
+            f"nodes {labels[0]} and {labels[1]} of a connection {kind} are {away:g} apart",
+            hint="give them one place, or use BEAM",
+        )
+        return
+    for dof in CONNECTIONS[kind]:
+        if dof < 2 or rotating[nodes].all():
+            terms = [(first, dof, 1.0), (second, dof, -1.0)]
+            model.constraints.append(Equation(terms, 0.0, where))
+
+
 def _assign(deck: Deck, card: Card, type_: str, value: tuple[float, ...]) -> None:
     name = card.value("ELSET")
     mine = [d for d in deck.attached if d.type == type_ and key(d.name) == key(name)]
@@ -160,8 +231,8 @@ def _assign(deck: Deck, card: Card, type_: str, value: tuple[float, ...]) -> Non
         )
 
 
-def build_attachments(deck: Deck, model: Model, find: Find) -> None:
-    """Add the deck's point masses, dashpots and gaps to the model."""
+def build_attachments(deck: Deck, model: Model, find: Find, rotating: NDArray[np.bool_]) -> None:
+    """Add the deck's point masses, dashpots, connectors and gaps to the model."""
     number = -1
     for draft in deck.attached:
         if not draft.value:
@@ -183,6 +254,8 @@ def build_attachments(deck: Deck, model: Model, find: Find) -> None:
                 (value,), turns = draft.value, draft.type == "ROTARYI"
                 mass, inertia = (0.0, value) if turns else (value, 0.0)
                 model.point_masses.append(PointMass(np.array(nodes), mass, inertia, where))
+            elif draft.type == "CONN2D2":
+                _connect(deck, model, draft, nodes, find, rotating)
             elif draft.type == "DASHPOT1":
                 x, y, turn = draft.value
                 model.dashpots.append(Dashpot(nodes[0], to_ground=(x, y, turn), where=where))
@@ -203,6 +276,7 @@ def build_attachments(deck: Deck, model: Model, find: Find) -> None:
 __all__ = [
     "AttachedDraft",
     "build_attachments",
+    "connector_section",
     "dashpot",
     "elements",
     "gap",

@@ -55,13 +55,16 @@ def harden(targets: Targets) -> None:
 
 def _hardened(section: Section, strain: float) -> Section:
     material = section.material
-    simple = isinstance(material, Mises) and not material.kinematic and not material.chaboche
-    if not simple or material.rate is not None:
+    if (
+        not isinstance(material, Mises)
+        or material.kinematic
+        or material.chaboche
+        or material.rate is not None
+    ):
         raise InputError(
             f"initial hardening of material {material.name or section.element} needs *PLASTIC with "
             "isotropic hardening, without rate or temperature"
         )
-    assert isinstance(material, Mises)
     if material.yield_curve is not None:
         stress, plastic = np.array(material.yield_curve, float).T
         first = float(np.interp(strain, plastic, stress))

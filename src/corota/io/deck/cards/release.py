@@ -1,0 +1,96 @@
+"""Hinges at ends of beams."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import Location
+from corota.io.deck import numerals
+from corota.io.deck.drafts import Draft, NodeBlock, ReleaseDraft, TieDraft
+from corota.io.deck.elements import LINE_ELEMENTS
+from corota.io.deck.lexer import key
+
+if TYPE_CHECKING:
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import ElementBlock, Scope
+    from corota.io.deck.lexer import Card
+    from corota.mesh.data import Floats, Ints
+
+#: Ends of an element.
+ENDS = {"S1": 0, "S2": -1}
+#: What is released: whether it is the moment in the plane.
+MOMENTS = {"M1": True, "ALLM": True, "M1-M2": True, "M2": False, "T": False, "M1-T": True}
+MOMENTS |= {"M2-T": False}
+
+
+def release(deck: Deck, card: Card) -> None:
+    """``*RELEASE``: element or set, S1 or S2, moments that the end does not carry."""
+    for row in card.rows():
+        deck.extra_fields(card, row, 3)
+        end, what = key(row.get(1)), key(row.get(2))
+        if not row.get(0):
+            deck.row_error(card, row, 0, "an element number or a set is missing")
+        elif end not in ENDS:
+            deck.row_error(card, row, 1, f"expected S1 or S2, found {row.get(1)!r}")
+        elif what not in MOMENTS:
+            deck.row_error(card, row, 2, f"expected {', '.join(MOMENTS)}, found {row.get(2)!r}")
+        elif not MOMENTS[what]:
+            deck.note(f"{row.where}: {card.spelled}: {what} acts out of the plane and is ignored")
+        else:
+            deck.releases.append(ReleaseDraft(card, row, deck.scope, ENDS[end]))
+    if not list(card.rows()):
+        deck.error(card, card.where, "a data line is missing: element or set, S1 or S2, moments")
+
+
+def add_releases(deck: Deck) -> None:
+    """Give released ends a node of their own, which moves with the other but turns freely."""
+    for draft in deck.releases:
+        labels = _labels(draft.scope, draft.row.get(0))
+        hinged = False
+        for block in draft.scope.elements:
+            if block.type not in LINE_ELEMENTS or LINE_ELEMENTS[block.type].role != "beam":
+                continue
+            for row in np.flatnonzero(np.isin(block.labels, labels)).tolist():
+                hinged = True
+                _hinge(deck, draft, block, row)
+        if not hinged:
+            deck.row_error(draft.card, draft.row, 0, f"no beams in {draft.row.get(0)}")
+
+
+def _labels(scope: Scope, name: str) -> Ints:
+    """Numbers of the elements of a set, or the number itself."""
+    if numerals.is_label(name):
+        return np.array([int(name)], np.int64)
+    named = scope.elsets.get(key(name))
+    if named is None:
+        return np.zeros(0, np.int64)
+    parts = [_labels(scope, e.name) if e.name else e.labels for e in named.entries]
+    return np.concatenate([np.zeros(0, np.int64), *parts])
+
+
+def _hinge(deck: Deck, draft: ReleaseDraft, block: ElementBlock, row: int) -> None:
+    scope, card = draft.scope, draft.card
+    old = int(block.nodes[row, draft.end])
+    new = 1 + max(int(b.labels.max(initial=0)) for b in scope.nodes)
+    point = _point(scope, old)
+    if point is None:
+        return  # its element is reported
+    block.nodes[row, draft.end] = new
+    at = draft.row.where or Location("", 0, 0)
+    lines = np.array([at.line], np.int64)
+    scope.nodes.append(NodeBlock(np.array([new], np.int64), point, at.file, lines))
+    tie = TieDraft("same", card, at, ready=True, dofs=(0, 1))
+    tie.target = Draft("node", card, draft.row, str(new), (0.0,))
+    tie.terms = [Draft("node", card, draft.row, str(old), (0.0,))]
+    deck.ties.append(tie)
+
+
+def _point(scope: Scope, label: int) -> Floats | None:
+    for block in scope.nodes:
+        found = np.flatnonzero(block.labels == label)
+        if len(found):
+            return np.array(block.points[found[-1:]], np.float64)
+    return None
