@@ -76,6 +76,8 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     const HOURGLASS: usize = 0;
     /// Share of the normal edge traction that goes into end moments (0 without drilling).
     const ALPHA_B: f64 = 0.0;
+    /// Number of each edge for [`Element::prepare`], where the thickness is uniform.
+    const EDGE: f64 = Self::ALPHA_B;
     /// Whether it is a line element (truss, beam, spring) and no part of the plane.
     const LINE: bool = false;
     /// Whether it is a spring: a line element without mass, section and axial strain.
@@ -130,8 +132,13 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     fn parameter_of(_beta0: f64) -> Option<f64> {
         None
     }
-    /// `sides` is the share [`Element::ALPHA_B`] of each edge (a, a + 1), which is less on an edge
-    /// that the element shares with one of a smaller share.
+    /// Number of an edge for [`Element::prepare`], from its share [`Element::ALPHA_B`] and its mean
+    /// thickness over that of the element.
+    fn edge(share: f64, _thickness: f64) -> f64 {
+        share
+    }
+    /// `sides` are the numbers of the edges (a, a + 1). The share of an edge is less where the
+    /// element shares it with one of a smaller share.
     fn prepare<T: Real>(x: &Nodal<T, N, 2>, parameter: f64, sides: &[T; N]) -> Self::Prepared<T>;
     fn sample<T: Real>(
         x: &Nodal<T, N, 2>,

@@ -29,6 +29,23 @@ pub const DISSIPATED: usize = 6;
 /// Least stiffness of the hourglass, relative to the elastic one.
 const LEAST: f64 = 0.01;
 
+/// Coefficient of each nodal value in the hourglass `g`: that of `r s` in the field that the nodes
+/// give, with the gradients at the center.
+#[inline(always)]
+pub fn gamma<T: Real>(x: &Nodal<T, 4, 2>, g: &Nodal<T, 4, 2>) -> [T; 4] {
+    const SIGN: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
+    let mut skew = [T::zero(); 2];
+    for a in 0..4 {
+        for i in 0..2 {
+            skew[i] = x[a][i].fma(T::real(SIGN[a]), skew[i]);
+        }
+    }
+    std::array::from_fn(|a| {
+        let linear = skew[0].fma(g[a][0], skew[1] * g[a][1]);
+        (T::real(SIGN[a]) - linear).scale(0.25)
+    })
+}
+
 struct Hourglass<T> {
     /// Coefficient of each nodal value in `g`.
     gamma: [T; 4],
@@ -43,22 +60,11 @@ struct Hourglass<T> {
 impl<T: Real> Hourglass<T> {
     #[inline(always)]
     fn new(x: &Nodal<T, 4, 2>, thickness: T) -> Self {
-        const SIGN: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
         let dn = shapes::square_linear([0.0, 0.0]).1;
         let j = shapes::jacobian(x, &dn);
         let (inverse, det) = inverse2(&j);
         let g = shapes::push(&inverse, &dn);
-        let mut skew = [T::zero(); 2];
-        for a in 0..4 {
-            for i in 0..2 {
-                skew[i] = x[a][i].fma(T::real(SIGN[a]), skew[i]);
-            }
-        }
-        let mut gamma = [T::zero(); 4];
-        for a in 0..4 {
-            let linear = skew[0].fma(g[a][0], skew[1] * g[a][1]);
-            gamma[a] = (T::real(SIGN[a]) - linear).scale(0.25);
-        }
+        let gamma = gamma(x, &g);
         let mut along = [[T::zero(); 2]; 2];
         let mut direction = [[T::zero(); 3]; 2];
         for axis in 0..2 {

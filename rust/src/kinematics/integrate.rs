@@ -369,7 +369,7 @@ where
     let own = history.per_point;
     let parameter = own.parameter::<T, N>(section);
     let stiff = if A > 0 { LEAST_PIVOT * own.law::<T, N>(0, section).moduli()[2][2] } else { 0.0 };
-    let prepared = E::prepare(x, parameter, &own.sides(E::ALPHA_B));
+    let prepared = E::prepare(x, parameter, &own.sides(E::EDGE));
     let mut bar = Dilatation::<T, N, M>::new::<E, A>(x, q, alpha, &prepared, section);
     let mut about = AboutMean::<T, E::Op<T>, N, M>::new::<E, A>(x, q, &prepared, section);
     if section.finite && (A > 0 || M == 3 || E::MEMORY > 0) && (N == 3 || N == 4) {
@@ -762,7 +762,7 @@ where
     E: Element<N, M, A>,
 {
     let parameter = own.parameter::<f64, N>(section);
-    let prepared = E::prepare(x, parameter, &own.sides(E::ALPHA_B));
+    let prepared = E::prepare(x, parameter, &own.sides(E::EDGE));
     let bar = Dilatation::<f64, N, M>::new::<E, A>(x, q, alpha, &prepared, section);
     let about = AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(x, q, &prepared, section);
     let at = |(p, point): (usize, &Point<N>)| {

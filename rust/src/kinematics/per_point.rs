@@ -95,11 +95,11 @@ impl<'a> PerPoint<'a> {
         Self { thickness: from(thickness), sides: from(sides), stride, laws: laws.map(|l| l.of(e)) }
     }
 
-    /// Share of the traction of each edge that goes into end moments, `alpha_b` unless given.
+    /// Number of each edge for [`crate::elements::Element::prepare`], `edge` unless given.
     #[inline(always)]
-    pub fn sides<T: Real, const N: usize>(&self, alpha_b: f64) -> [T; N] {
+    pub fn sides<T: Real, const N: usize>(&self, edge: f64) -> [T; N] {
         if self.sides.is_empty() {
-            return [T::real(alpha_b); N];
+            return [T::real(edge); N];
         }
         std::array::from_fn(|a| T::load(&self.sides[a * self.stride..]))
     }

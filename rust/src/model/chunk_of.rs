@@ -43,7 +43,7 @@ pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
     pub(super) mass_factors: Vec<f64>,
     /// Thickness by point, `[p]` strided; empty where that of the section holds.
     pub(super) thickness: Vec<f64>,
-    /// Share [`Element::ALPHA_B`] of each edge, `[N]` strided; empty where that of the element holds.
+    /// [`Element::edge`] of each edge, `[N]` strided; empty where that of the element holds.
     pub(super) sides: Vec<f64>,
     /// Thickness and density of the nodes of each element; empty likewise.
     pub(super) nodal_thickness: Vec<[f64; N]>,
@@ -101,11 +101,16 @@ where
             }
         }
         let mut sides = Vec::new();
-        if !shared.sides.is_empty() {
-            sides.resize(N * stride, E::ALPHA_B);
-            for (e, of_edges) in of_nodes(&shared.sides).iter().enumerate() {
-                for (a, share) in of_edges.iter().enumerate() {
-                    sides[a * stride + e] = *share;
+        if !shared.sides.is_empty() || (!nodal_thickness.is_empty() && E::EDGE != 0.0) {
+            sides.resize(N * stride, E::EDGE);
+            let shares = of_nodes(&shared.sides);
+            for e in 0..nodes.len() {
+                let share = shares.get(e).unwrap_or(&[E::ALPHA_B; N]);
+                let thick = nodal_thickness.get(e).unwrap_or(&[1.0; N]);
+                let mean = thick.iter().sum::<f64>() / N as f64;
+                for (a, share) in share.iter().enumerate() {
+                    let here = 0.5 * (thick[a] + thick[(a + 1) % N]);
+                    sides[a * stride + e] = E::edge(*share, here / mean);
                 }
             }
         }
@@ -138,6 +143,12 @@ where
     /// Initial strain from the element `e` of the chunk on.
     pub(super) fn initial_from(&self, e: usize) -> &[f64] {
         if self.initial.is_empty() { &[] } else { &self.initial[e..] }
+    }
+
+    /// Share [`Element::ALPHA_B`] of each edge of the element `e` of the chunk.
+    pub(super) fn shares(&self, e: usize) -> [f64; N] {
+        let rows = self.shared.sides.as_chunks::<N>().0;
+        rows.get(self.elements[e] as usize).copied().unwrap_or([E::ALPHA_B; N])
     }
 
     /// What the element `e` of the chunk has of its own.

@@ -88,13 +88,7 @@ where
             let rho = self.nodal_density.get(e).map_or(s.rho, |nodal| interpolate(p, nodal));
             rho * self.thickness(e, p)
         };
-        let mut mass = Mass::new::<E, M, A>(
-            x,
-            &s.mass_points,
-            rho_t,
-            &self.per_point(e).sides(E::ALPHA_B),
-            kind,
-        );
+        let mut mass = Mass::new::<E, M, A>(x, &s.mass_points, rho_t, &self.shares(e), kind);
         if E::LINE && M == 3 && s.section.thickness > 0.0 {
             mass.turn_with(s.section.profile[1] / s.section.thickness);
         }
@@ -149,7 +143,7 @@ where
                 (mass, Self::coupled(kind))
             } else {
                 let (points, kind) = (&self.shared.mass_points, MassKind::Consistent);
-                let sides = self.per_point(e).sides(E::ALPHA_B);
+                let sides = self.shares(e);
                 let thickness = |p: &Point<N>| self.thickness(e, p);
                 let volume = Mass::new::<E, M, A>(&x, points, thickness, &sides, kind);
                 (volume, Self::coupled(kind))
