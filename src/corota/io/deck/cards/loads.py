@@ -32,6 +32,7 @@ _OTHER_LOADS = (
         "give a *SURFACE of the edges (S3 to S6) and its pressure: the force per length divided by "
         "the thickness",
     ),
+    (r"CENT\Z", "divide by the density and give CENTRIF, the square of the angular velocity"),
     (r"ROTDYNF\Z", "CENTRIF takes the square of the angular velocity"),
     (r"(F|VBF|SBF|SP)\d?\Z", "give springs by *SPRING, pressures by P1 to P4"),
 )
