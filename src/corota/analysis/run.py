@@ -532,6 +532,7 @@ class Analysis:
             held,
             pairs,
             T=system.free.now.copy() if system.free.responds else None,
+            H=state.harmonic,
         )
         if self.model.stages:
             with system.timed("stages"):

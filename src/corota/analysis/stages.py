@@ -286,6 +286,8 @@ def _utilization(stage: Stage, frame: Frame, system: System) -> Floats:
 def _candidates(frame: Frame, name: str) -> list[Floats]:
     """Extremes of a variable at the points of a frame, of fatigue those of principal stresses."""
     found = []
+    if name == "MISES" and frame.H is not None:
+        name = "MISESA"  # at resonance the stress of the instant of the largest load vanishes
     for variable in ("SP1", "SP3") if name == FATIGUE else (name,):
         row = row_of(frame, variable)
         if row is not None:

@@ -107,6 +107,7 @@ class State:
     strains: list[tuple[float, int, int]] = field(default_factory=lambda: [(0.0, 0, 0)] * 2)
     linear: LinearMotion | None = None
     stages: StageRecorder | None = None
+    harmonic: Floats | None = None
     recover: Callable[[], tuple[list[PointFields], dict[str, float]]] | None = None
     failed: Outcome | None = None
     loop: dict[str, Any] | None = None

@@ -24,7 +24,7 @@ from corota.model.units import Units
 from corota.results.extremes import places_of
 from corota.results.results import Frame, PointFields, Results
 from corota.results.scalars import OF_FRAMES, where_missing
-from corota.results.table import CONTACT, TABLE
+from corota.results.table import CONTACT, HARMONIC, TABLE
 from corota.results.variables import FORCES
 
 if TYPE_CHECKING:
@@ -296,9 +296,10 @@ class FileFrames(Sequence[Frame]):
                 moving[attribute] = at
         if "temperature" in self._file["VTKHDF/PointData"]:
             moving["T"] = self.at_points("temperature", number)
-        if any(name in self._file["VTKHDF/PointData"] for name in CONTACT):
-            columns = [self._or_zero(name, number) for name in CONTACT]
-            moving["C"] = np.column_stack(columns)
+        for attribute, names in (("C", CONTACT), ("H", HARMONIC)):
+            if any(name in self._file["VTKHDF/PointData"] for name in names):
+                columns = [self._or_zero(name, number) for name in names]
+                moving[attribute] = np.column_stack(columns)
         fields = [self._fields(block, number) for block in range(len(self._blocks))]
         return Frame(
             int(scalars["step"]),

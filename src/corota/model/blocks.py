@@ -137,7 +137,8 @@ def blocks_of(model: Model) -> list[BlockOfCells]:
             if element.cell != cells_of_kind.kind:
                 raise ModelError(
                     f"{element.name} needs {element.cell} cells; element "
-                    f"{labels[offset + rows[0]]} is a {cells_of_kind.kind}",
+                    f"{labels[offset + rows[0]]} is a {cells_of_kind.kind}: name an element for "
+                    "each kind, as element={'quad4': 'Q4I', 'tri3': 'OPT'}",
                     section.where,
                 )
             blocks.append(BlockOfCells(section, rows + offset, cells_of_kind.nodes[rows]))

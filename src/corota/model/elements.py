@@ -8,6 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 import corota._core as _core
+from corota.errors import InputError
 from corota.names import choose
 
 if TYPE_CHECKING:
@@ -114,4 +115,10 @@ def find(name: str, where: Location | None = None) -> Element:
         If there is none.
     """
     found = known(name) if isinstance(name, str) else None
+    if found is None and isinstance(name, str) and name[:3].upper() in ("CPS", "CPE", "CAX"):
+        raise InputError(
+            f"{name!r} is an element of decks. Here plane= is a setting of its own, and elements "
+            "are Q4 (CPS4), Q4I (CPS4I, CPS4R), Q8 (CPS8), Q8R (CPS8R), T3 (CPS3), T6 (CPS6)",
+            where,
+        )
     return found or _all()[choose(name, _all(), "element", where)]

@@ -113,7 +113,7 @@ def _bending(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
             return [
                 Diagnostic(
                     "warning",
-                    f"{name} is too stiff in bending: about {max(width / size, 1.0):.0f} cells "
+                    f"{name} is too stiff in bending: about {max(width / size, 1.0):.1f} cells "
                     f"through the width of the part of element {mesh.cell_labels[mine[0]]}",
                     section.where,
                     hint=f"use {better}, or at least {element.bending_cells} cells",

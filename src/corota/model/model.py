@@ -12,7 +12,7 @@ import numpy as np
 from corota.display import CELLS_DRAWN, LONGEST, brief, picture, table
 from corota.errors import InputError, number
 from corota.lazy import lazy
-from corota.mesh import selection
+from corota.mesh import EDGES, selection
 from corota.model.attachments import Dashpot, PointMass
 from corota.model.constraints import Constraint, Coupling, Equation, LocalAxes, StraightLine
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
@@ -186,7 +186,7 @@ class Model(Loading, LineSections, InitialFields, Stages):
         self,
         cells: str | ArrayLike = "all",
         *,
-        element: str,
+        element: str | Mapping[str, str],
         material: Material,
         thickness: float | ArrayLike = 1.0,
         plane: Plane = "stress",
@@ -201,8 +201,9 @@ class Model(Loading, LineSections, InitialFields, Stages):
         ----------
         cells : str or array_like of int, shape (n,)
             Name of a cell set, ``"all"``, or global cell indices.
-        element : str
-            One of ``corota.model.elements.names()``; must fit the cells' shape.
+        element : str or dict of str to str
+            One of ``corota.model.elements.names()``; must fit the cells' shape. In a mixed mesh one
+            for each kind of cell: ``{"quad4": "Q4I", "tri3": "OPT"}``.
         material : Material
             Copied; later changes have no effect.
         thickness : float or array_like, shape (n_nodes,), optional
@@ -237,19 +238,40 @@ class Model(Loading, LineSections, InitialFields, Stages):
 
         everything = isinstance(cells, str) and cells.lower() in ("", "all")
         where = "all" if everything else self._cells(cells)
-        self.sections.append(
-            Section(
-                where,
-                element,
-                deepcopy(material),
-                cast("float", thickness),
-                plane,
-                local_strain,
-                orientation,
-                mean_dilatation=mean_dilatation,
-                beta0=beta0,
+        parts: list[tuple[str | Ints, str]]
+        if isinstance(element, Mapping):
+            parts = self._by_kind(where, element)
+        else:
+            parts = [(where, element)]
+        for part, name in parts:
+            self.sections.append(
+                Section(
+                    part,
+                    name,
+                    deepcopy(material),
+                    cast("float", thickness),
+                    plane,
+                    local_strain,
+                    orientation,
+                    mean_dilatation=mean_dilatation,
+                    beta0=beta0,
+                )
             )
-        )
+
+    def _by_kind(
+        self, cells: str | Ints, element: Mapping[str, str]
+    ) -> list[tuple[str | Ints, str]]:
+        """The plane cells of each kind among some, and the element that they get."""
+        chosen = self.mesh.cell_indices(cells)
+        found: list[tuple[str | Ints, str]] = []
+        for first, block in zip(self.mesh.offsets, self.mesh.cells, strict=False):
+            mine = chosen[(chosen >= first) & (chosen < first + len(block))]
+            if not len(mine) or not EDGES[block.kind]:
+                continue
+            if block.kind not in element:
+                raise InputError(f"element= names none for the {len(mine)} {block.kind} cells")
+            found.append((mine, element[block.kind]))
+        return found
 
     def velocity(
         self,

@@ -196,7 +196,7 @@ class Stages:
                 None if point is None else _pair(point),
                 None if against is None else self._nodes(against),
                 input,
-                dict(allowable or {}),
+                {k if k == FATIGUE else k.upper(): v for k, v in (allowable or {}).items()},
                 stiffness,
             )
         )

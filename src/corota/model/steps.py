@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from corota.arrays import distinct
@@ -565,6 +566,9 @@ class SteadyState(Step):
         Range of frequencies [1/time].
     points : int
         Frequencies between neighboring eigenfrequencies, ends included.
+    bias : float
+        Above 1 they crowd near the eigenfrequencies: those of an interval stand at
+        ``sign(t) |t|**(1 / bias)`` with evenly spaced t from -1 to 1. Without modes they are even.
     damping : float or sequence of tuple
         Share of critical damping of every mode, or of ranges of modes (see `ModalDynamic`).
     rayleigh : tuple of float
@@ -587,6 +591,7 @@ class SteadyState(Step):
     rayleigh: tuple[float, float] = (0.0, 0.0)
     ramp: bool = False
     residual: bool = False
+    bias: float = 3.0
     direct: bool = False
     mass: Literal["consistent", "constant", "lumped"] = "consistent"
     imaginary_loads: list[Load] = field(default_factory=list)
@@ -610,6 +615,8 @@ class SteadyState(Step):
                 f"{self.points:,}",
                 self.where,
             )
+        if not (math.isfinite(self.bias) and self.bias > 0.0):
+            raise InputError(f"bias is a positive number, not {self.bias:g}", self.where)
         check_damping(self.damping, self.rayleigh, self.where)
         if self.direct and (self.residual or _any_share(self.damping)):
             raise InputError(
@@ -624,7 +631,10 @@ class SteadyState(Step):
 
         inside = own[(own > self.lowest) & (own < self.highest)]
         marks = distinct([self.lowest, *inside, self.highest])
-        parts = [np.linspace(a, b, self.points) for a, b in zip(marks, marks[1:], strict=False)]
+        t = np.linspace(-1.0, 1.0, self.points)
+        if len(own):
+            t = np.sign(t) * np.abs(t) ** (1.0 / self.bias)
+        parts = [(a + b) / 2.0 + (b - a) / 2.0 * t for a, b in pairwise(marks)]
         return distinct(np.concatenate(parts))
 
 

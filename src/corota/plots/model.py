@@ -39,6 +39,8 @@ SHADES = ("#dbe7f3", "#fbe6d3", "#dcefe4", "#f3e0ec", "#f8efc9", "#e4e4ea")
 APART = 0.022
 #: Sets in the legend, at most.
 MOST_SETS = 8
+#: A set with this share of the nodes is that of all: reference nodes may be missing.
+WHOLE = 0.9
 #: Triangles of matplotlib whose tip is at the point: by direction, then by side of the model.
 CARETS = ((5, 4), (6, 7))
 LOAD, SUPPORT, MOVED = "#D55E00", "#0b6e4f", "#7b3fa0"
@@ -159,7 +161,7 @@ def _sets(ax: Any, subject: Model) -> None:
         )
         shown += 1
     for name, members in mesh.node_sets.items():
-        whole = not 0 < len(members) < mesh.n_nodes
+        whole = not 0 < len(members) < WHOLE * mesh.n_nodes
         if shown == MOST_SETS or whole or name in mesh.edge_sets:
             continue
         color = COLORS[shown % len(COLORS)]

@@ -86,6 +86,9 @@ class Frame(Brief):
         Contact at slave nodes, 0 elsewhere: pressure, shear traction (positive along the slave
         surface, the body on the left), gap, slip so far, status (0 open, 1 closed, 2 slipping);
         tractions per reference area.
+    H : ndarray, shape (n_nodes, 6), or None
+        Of a harmonic response: amplitudes of the displacements, their phases, amplitudes of the
+        reactions, each x and y, without the state that it is about.
     constraint_force : ndarray, shape (n_nodes, 3), or None
         Force and moment of constraints on nodes: the part of the internal force that neither loads
         nor
@@ -133,6 +136,7 @@ class Frame(Brief):
     T: Floats | None = None
     cells_with: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
     absent: frozenset[str] = frozenset()
+    H: Floats | None = None
 
 
 __all__ = ["Frame", "PointFields"]

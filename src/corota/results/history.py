@@ -150,7 +150,7 @@ class History(Brief, NDArrayOperatorsMixin):
 
     def plot(
         self,
-        against: str | History = "time",
+        against: str | History = "",
         *,
         path: str | PathLike[str] | None = None,
         ax: Any = None,
@@ -161,7 +161,8 @@ class History(Brief, NDArrayOperatorsMixin):
         ----------
         against : str or History
             ``"load factor"``, ``"time"``, ``"increment"``, a scalar of the frames, or another
-            history. A load factor or force goes on the vertical axis.
+            history; by default the time, or the frequency of a harmonic response. A load factor or
+            force goes on the vertical axis.
         path : path-like, optional
             Write PNG, SVG or PDF there.
         ax : matplotlib axes, optional
@@ -170,8 +171,20 @@ class History(Brief, NDArrayOperatorsMixin):
         -------
         matplotlib.figure.Figure
         """
-        other = against if isinstance(against, History) else self.results.history(against)
-        return draw_curve(self, other, path=path, ax=ax)
+        curve, other = self, against
+        if not isinstance(other, History):
+            other = self.results.history(other or self._abscissa)
+            if other.name == "frequency":
+                inside = other.values > 0.0  # frames of other steps have none
+                curve = History(self.name, np.where(inside, self.values, np.nan), self.results)
+                other = History(other.name, np.where(inside, other.values, np.nan), self.results)
+        return draw_curve(curve, other, path=path, ax=ax)
+
+    @property
+    def _abscissa(self) -> str:
+        """What a curve is drawn over: the time, or the frequency of a harmonic response."""
+        frames = self.results.frames
+        return "frequency" if frames and "frequency" in frames[-1].scalars else "time"
 
     def to_dataframe(self) -> Any:
         """One column over the total time, as a ``pandas.DataFrame``.

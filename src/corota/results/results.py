@@ -291,13 +291,14 @@ class Results(Brief):
         Parameters
         ----------
         name : str
-            Variable; by default ``MISES``, or ``U`` where nothing is stressed.
+            Variable; by default ``MISES`` (``MISESA`` of a harmonic response), or ``U`` where
+            nothing is stressed.
         **options
             Those of :func:`corota.plots.contour`.
         """
         if not name:
-            stressed = "MISES" in self.variables(options.get("frame", -1))
-            name = "MISES" if stressed and self.nodal("MISES").any() else "U"
+            known = self.variables(options.get("frame", -1))
+            name = next((n for n in ("MISESA", "MISES") if n in known and self.nodal(n).any()), "U")
         return draw_contour(self, name, **options)
 
     def view(
@@ -698,7 +699,11 @@ class Results(Brief):
         """
         lines = [repr(self)]
         if self.frames:
-            names = [name for name in ("U", "MISES", "S11", "S22") if name in self.variables()]
+            names = [
+                name
+                for name in ("U", "UA1", "UA2", "MISES", "MISESA", "S11", "S22")
+                if name in self.variables()
+            ]
             for name in names:
                 lines.append(f"  {self.extremes(name, at=self._places)}")
             if unstable := self._instability():

@@ -153,11 +153,24 @@ _ROWS = (
     _number("CSLIP", "contact slip", "length", frame="C", first=3, request="CDIS"),
     _number("CSTATUS", "contact status: 0 open, 1 closed, 2 slipping", frame="C", first=4,
             request="CDIS"),
+    _number("UA1", "amplitude of the displacement x", "length", frame="H", positive=True,
+            request="PU"),
+    _number("UA2", "amplitude of the displacement y", "length", frame="H", first=1, positive=True,
+            request="PU"),
+    _number("UP1", "phase of the displacement x", "rad", frame="H", first=2, request="PU"),
+    _number("UP2", "phase of the displacement y", "rad", frame="H", first=3, request="PU"),
+    _number("RFA1", "amplitude of the reaction x", "force", frame="H", first=4, positive=True,
+            request="PRF"),
+    _number("RFA2", "amplitude of the reaction y", "force", frame="H", first=5, positive=True,
+            request="PRF"),
     _tensor("S", "Cauchy stress", "Cauchy stress xy", STRESS, array="stress",
             invariants=(Invariant("MISES", "von Mises stress", "Mises", -1),
                         *_principal("S", "stress")),
             title="stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) ", block="STRESS",
             letter="S"),
+    _tensor("SA", "amplitude of the stress", "amplitude of the stress xy", STRESS, request="PHS"),
+    _number("MISESA", "largest von Mises stress over a period", STRESS, positive=True,
+            request="PHS"),
     _tensor("E", "strain", "shear strain (angle)", array="strain", shear=0.5,
             invariants=_principal("E", "strain"), block="TOSTRAIN", letter="E",
             title="strains (elem, integ.pnt.,exx,eyy,ezz,exy,exz,eyz) "),
@@ -227,6 +240,8 @@ NODAL: dict[str, tuple[str, int]] = {
 }
 #: Columns of the contact values at nodes.
 CONTACT = tuple(row.name for row in _ROWS if row.frame == "C")
+#: Columns of the amplitudes of a harmonic response at nodes.
+HARMONIC = tuple(row.name for row in _ROWS if row.frame == "H")
 #: Tensors at points, rows xx, yy, zz, xy.
 TENSORS = tuple(row.name for row in _ROWS if row.tensor)
 #: Components of the tensors at points: name to (tensor, column).
@@ -245,6 +260,6 @@ POSITIVE = frozenset(
 )
 
 __all__ = [
-    "COMPONENTS", "CONTACT", "DIMENSIONS", "INVARIANTS", "MEANING", "NODAL", "POSITIVE", "TABLE",
-    "TENSORS", "Invariant", "Variable", "variables",
+    "COMPONENTS", "CONTACT", "DIMENSIONS", "HARMONIC", "INVARIANTS", "MEANING", "NODAL", "POSITIVE",
+    "TABLE", "TENSORS", "Invariant", "Variable", "variables",
 ]  # fmt: skip

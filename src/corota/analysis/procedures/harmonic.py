@@ -48,10 +48,10 @@ def steady_state_step(
 ) -> None:
     """Harmonic response to the step's loads and moves of supports, frequency by frequency.
 
-    Each frame is one frequency, which is its step time. Displacement, velocity and acceleration
-    are those of the instant at which loads in phase are largest: ``U`` holds the displacement of
-    the state and the real part of the complex amplitude, ``-V`` over the circular frequency the
-    imaginary part.
+    Each frame is one frequency, which is its step time. Displacement, velocity, acceleration,
+    reaction and stress are those of the instant at which loads in phase are largest: ``U`` holds
+    the displacement of the state and the real part of the complex amplitude, ``-V`` over the
+    circular frequency the imaginary part. Amplitudes and phases are variables of their own.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def steady_state_step(
     loop = IncrementLoop(system, step, number, state, observers, save)
     loop.run(HarmonicStepper(loop, step))
     state.u, state.at, state.v, state.a = u0, at0, v0, a0
-    state.recover = None
+    state.recover = state.harmonic = None
     state.step_time = 0.0
 
 
@@ -139,7 +139,11 @@ class HarmonicStepper:
             forces = forces + self.relaxed.at(w) @ z
         state.at = supported(lin, forces.real, lin.at.external + load.real)
         state.step_time = f
-        state.recover = lambda: self.fields.at(response.real)
+        reaction = _reaction(lin, forces, load)
+        amplitude = [lin.system.by_node(np.abs(part))[:, :2] for part in (response, reaction)]
+        phase = lin.system.by_node(np.angle(response))[:, :2]
+        state.harmonic = np.hstack([amplitude[0], phase, amplitude[1]])
+        state.recover = lambda: self.fields.over_period(response)
         size, moves_only = np.abs(response), ~self.system.is_rotation
         largest = int(np.where(moves_only, size, 0.0).argmax())
         scalars = {
@@ -148,6 +152,18 @@ class HarmonicStepper:
             "phase at largest": float(np.angle(response[largest])),
         }
         return Accepted(self.taken, 1.0, scalars)
+
+
+def _reaction(lin: LinearMotion, forces: Complex, load: Complex) -> Complex:
+    """Complex amplitude of the reactions of the prescribed dofs, shape (n_dofs,)."""
+    parts = []
+    for force, external in ((forces.real, load.real), (forces.imag, load.imag)):
+        found = np.array(lin.link.gather(-external))
+        found[lin.free] += force[: lin.nf]
+        found[lin.free] += lin.tractions(found[lin.free])
+        parts.append(np.where(lin.system.conditions.constrained, found, 0.0))
+    whole: Complex = parts[0] + 1j * parts[1]
+    return whole
 
 
 def _amplitudes(

@@ -105,7 +105,7 @@ class Parameters:
                 continue
             if "<" in line:
                 lines[number - 1], unknown = self._replaced(line)
-                faults += [(number, f"no *PARAMETER named {name} before this") for name in unknown]
+                faults += [(number, _unknown(name)) for name in unknown]
         return "\n".join(lines).encode(), faults
 
     def _replaced(self, line: str) -> tuple[str, list[str]]:
@@ -169,6 +169,12 @@ class Parameters:
                 return _limited(_power(*found))
             return _limited(function(*found))
         raise ValueError("only numbers, names, + - * / ** and functions may stand here")
+
+
+def _unknown(name: str) -> str:
+    if name.isidentifier():
+        return f"no *PARAMETER named {name} before this"
+    return f"<{name}>: expressions belong below *PARAMETER (t2 = {name}), and <t2> here"
 
 
 def _power(a: Value, b: Value) -> Value:

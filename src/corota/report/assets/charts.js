@@ -108,10 +108,11 @@ export class Charts {
     const names = history.names.filter((name) => !constant(history.column(name)));
     const displacements = names.filter((name) => /^U[12] /.test(name));
     const moves = size(history.column("ALLKE") ?? []) > 0;
-    const x = moves ? "time" : displacements.at(-1) ?? (names.includes("largest U") ? "largest U" : "time");
-    const y = this.#driver(names, moves);
+    const harmonic = names.includes("largest amplitude");
+    const x = harmonic ? "frequency" : moves ? "time" : displacements.at(-1) ?? (names.includes("largest U") ? "largest U" : "time");
+    const y = harmonic ? "largest amplitude" : this.#driver(names, moves);
     this.main = y;
-    const chart = this.#chart({ title: moves ? "Force over time" : "Load–displacement", pick: this.pick, height: 260 });
+    const chart = this.#chart({ title: harmonic ? "Harmonic response" : moves ? "Force over time" : "Load–displacement", pick: this.pick, height: 260 });
     const selects = [["vertical", y], ["horizontal", x]].map(([label, value]) => {
       const select = el("select", { "aria-label": `Quantity on the ${label} axis` });
       fill(select, names.map((name) => [name, name]), value);
@@ -120,7 +121,10 @@ export class Charts {
     chart.head.append(el("span", { class: "choose" }, selects[0], " over ", selects[1]));
     this.#live(() => {
       const [vertical, horizontal] = selects.map((select) => select.value);
-      const [xs, ys] = [history.column(horizontal), history.column(vertical)];
+      // Frames of other steps have no frequency.
+      const outside = (i) => harmonic && !(history.column("frequency")[i] > 0);
+      const xs = history.column(horizontal);
+      const ys = Array.from(history.column(vertical), (v, i) => (outside(i) ? null : v));
       chart.show([...branches(vertical, xs, ys), ...this.#beside(vertical, horizontal)], {
         x: history.label(horizontal),
         y: history.label(vertical),
@@ -238,6 +242,7 @@ export class Charts {
   #increments() {
     const { history } = this;
     const found = [];
+    if (history.column("iterations")?.every((v) => !v)) return found; // linear steps
     for (const [name, second] of [["iterations", false], ["attempts", false], ["dt", true]]) {
       const values = history.column(name);
       if (values && !(name === "attempts" && values.every((v) => v <= 1))) found.push({ name, second });

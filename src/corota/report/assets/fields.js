@@ -10,7 +10,7 @@ const VECTORS = {
 };
 const TENSORS = { S: "S", E: "E", PE: "PE", ALPHA: "ALPHA" };
 /** Order of the list: others follow. */
-const FIRST = ["MISES", "PEEQ", "S11", "S22", "S33", "S12", "SP1", "SP2", "SP3", "U", "U1", "U2", "UR3", "CPRESS"];
+const FIRST = ["MISESA", "MISES", "PEEQ", "S11", "S22", "S33", "S12", "SP1", "SP2", "SP3", "U", "U1", "U2", "UR3", "CPRESS"];
 
 /** Principal values of xx, yy, zz, xy, largest first. */
 function principal(xx, yy, zz, xy) {

@@ -61,7 +61,7 @@ export class Scene extends EventTarget {
   }
 
   #firstField() {
-    for (const name of ["MISES", "U"]) {
+    for (const name of ["MISESA", "MISES", "U"]) {
       const field = this.fields.get(name);
       if (field && this.shown.some((frame) => field.values(frame, this.model.nNodes).some((v) => v !== 0))) return field;
     }

@@ -174,7 +174,7 @@ def modal_dynamic(deck: Deck, card: Card) -> None:
 
 
 def steady_state(deck: Deck, card: Card) -> None:
-    """``*STEADY STATE DYNAMICS[, DIRECT]``: lowest, highest frequency, points between modes."""
+    """``*STEADY STATE DYNAMICS[, DIRECT]``: range, points between modes, bias."""
     now = _procedure(deck, card)
     if now is None:
         return
@@ -185,18 +185,22 @@ def steady_state(deck: Deck, card: Card) -> None:
     low = deck.real(card, rows[0], 0, "the lowest frequency", 0.0)
     high = deck.real(card, rows[0], 1, "the highest frequency")
     points = deck.integer(card, rows[0], 2, "the number of points", 20)
-    if low is None or high is None or points is None:
+    bias = deck.real(card, rows[0], 3, "the bias", 3.0)
+    if low is None or high is None or points is None or bias is None:
         return
     if not 0.0 <= low < high:
         deck.row_error(card, rows[0], 1, f"the range must increase, not {low:g} to {high:g}")
     elif points < 2:
         deck.row_error(card, rows[0], 2, f"at least 2 points are needed, not {points}")
+    elif bias <= 0.0:
+        deck.row_error(card, rows[0], 3, f"the bias must be positive, not {bias:g}")
     else:
         now.make = SteadyState
         now.options = {
             "lowest": low,
             "highest": high,
             "points": points,
+            "bias": bias,
             "rayleigh": deck.damping,
             "ramp": False,
             "direct": card.has("DIRECT"),

@@ -265,7 +265,7 @@ def _modal_dynamic(says: _Says) -> tuple[str, str]:
 def _steady_state(says: _Says) -> tuple[str, str]:
     step: SteadyState = says.step
     says.refuse("residual", "mass")
-    row = f"{numbers((step.lowest, step.highest))}, {step.points}\n"
+    row = f"{numbers((step.lowest, step.highest))}, {step.points}, {step.bias:.12g}\n"
     text = f"*STEADY STATE DYNAMICS{', DIRECT' if step.direct else ''}\n{row}"
     return says.head(), text + _modal_damping(step)
 
