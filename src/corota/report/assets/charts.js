@@ -109,8 +109,9 @@ export class Charts {
     const displacements = names.filter((name) => /^U[12] /.test(name));
     const moves = size(history.column("ALLKE") ?? []) > 0;
     const harmonic = names.includes("largest amplitude");
-    const x = harmonic ? "frequency" : moves ? "time" : displacements.at(-1) ?? (names.includes("largest U") ? "largest U" : "time");
-    const y = harmonic ? "largest amplitude" : this.#driver(names, moves);
+    const stage = harmonic ? null : history.stages.findLast((s) => names.includes(`${s}: travel`) && names.includes(`${s}: load`));
+    const x = stage ? `${stage}: travel` : harmonic ? "frequency" : moves ? "time" : displacements.at(-1) ?? (names.includes("largest U") ? "largest U" : "time");
+    const y = stage ? `${stage}: load` : harmonic ? "largest amplitude" : this.#driver(names, moves);
     this.main = y;
     const chart = this.#chart({ title: harmonic ? "Harmonic response" : moves ? "Force over time" : "Load–displacement", pick: this.pick, height: 260 });
     const selects = [["vertical", y], ["horizontal", x]].map(([label, value]) => {
@@ -234,7 +235,7 @@ export class Charts {
   #contact() {
     const { history } = this;
     return history.names
-      .filter((name) => CONTACT.test(name) && !history.column(name).every((v) => v === 0 || Number.isNaN(v)))
+      .filter((name) => CONTACT.test(name) && !history.stages.some((s) => name.startsWith(`${s}: `)) && !history.column(name).every((v) => v === 0 || Number.isNaN(v)))
       .slice(0, 8)
       .map((name) => ({ name }));
   }

@@ -30,6 +30,11 @@ export class History {
     return this.units[name] ? `${name} [${this.units[name]}]` : name;
   }
 
+  /** Names of stages: bodies whose travel is measured. */
+  get stages() {
+    return this.names.filter((name) => name.endsWith(": travel")).map((name) => name.slice(0, -": travel".length));
+  }
+
   /** Values of a column over the rows; null where there is no such column. */
   column(name) {
     if (!this.columns.has(name)) {

@@ -41,7 +41,7 @@ export class Tables {
   constructor(place, model, history, scene, pick, other) {
     Object.assign(this, { place, model, history, scene, pick, other });
     this.charts = [];
-    const panels = [panel("Comparison", true, other && this.#comparison()), panel("Notes and warnings", true, this.#notes())];
+    const panels = [panel("Comparison", true, other && this.#comparison()), panel("Stages", true, ...this.#stages()), panel("Notes and warnings", true, this.#notes())];
     if (model) {
       panels.push(
         panel("Model", true, this.#sections(), this.#materials()),
@@ -147,6 +147,18 @@ export class Tables {
       .filter(([, first, second]) => first || second);
     const [a, b] = [history.facts.job, other.facts.job];
     return table(["", `largest size, ${a}`, b, "difference", `last, ${a}`, b], rows);
+  }
+
+  /** What was measured of each stage: the last value, the smallest and the largest. */
+  #stages() {
+    const { history } = this;
+    return history.stages.map((stage) => {
+      const rows = history.names.filter((name) => name.startsWith(`${stage}: `)).map((name) => {
+        const values = history.column(name).filter(Number.isFinite);
+        return [history.label(name).slice(stage.length + 2), values.at(-1), Math.min(...values), Math.max(...values)];
+      }).filter(([, , low, high]) => low || high);
+      return table(["", "last", "smallest", "largest"], rows, stage);
+    });
   }
 
   #notes() {
