@@ -86,13 +86,11 @@ def main() -> None:
     parser.add_argument("--record", type=Path, help="file from which the search goes on")
     record = parser.parse_args().record
     x, found = find(record=record)
-    body = ct.mesh.to_quadratic(found.body(x))
-    _, exact = analyze(body, SHEET)
-    _, soft = analyze(found.mesh, found.thicknesses(x))
+    body = gradients.reanalyze(build, found, x, stroke)
     sys.stdout.write(
         f"share of material {found.volume(x)[0]:.4f}, gray {found.gray(x):.4f}\n"
-        f"output by densities {soft:.4f} mm, by the body {exact:.4f} mm "
-        f"({body.n_cells} triangles)\n"
+        f"output by densities {body.densities:.4f} mm, by the body {body.body:.4f} mm "
+        f"({body.mesh.n_cells} triangles), off by {body.error:.1%}\n"
     )
 
 

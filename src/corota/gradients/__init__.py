@@ -26,6 +26,7 @@ from corota.gradients.parameters import (
     Shape,
     Thickness,
 )
+from corota.gradients.reanalysis import Reanalysis, reanalyze
 from corota.gradients.runs import Run, ValueAndGradient, gradient, value_and_grad
 from corota.gradients.shaping import ShapeDesign, shape
 
@@ -48,6 +49,7 @@ __all__ = [
     "Parameter",
     "Positions",
     "Reaction",
+    "Reanalysis",
     "Run",
     "Shape",
     "ShapeDesign",
@@ -60,6 +62,7 @@ __all__ = [
     "gradient",
     "optimize",
     "optimize_density",
+    "reanalyze",
     "shape",
     "value_and_grad",
     "write_page",
