@@ -161,3 +161,19 @@ def test_the_crossings_found_are_those_of_every_node_with_every_piece(seed: int)
     assert np.isfinite(found).any()
     none = np.zeros(0, np.int64)
     assert not len(times_of_crossing(first, last, ends, old, new, none, np.zeros(0)))
+
+
+@pytest.mark.parametrize("above", [0.0, 1e-12, -1e-12])
+def test_a_node_that_touches_leaves_around_a_corner(above: float) -> None:
+    """A rest of Newton's method at the start is no way through; a real one is."""
+    piece = np.array([[[1.0, 0.0], [0.0, 0.0]]])  # the outer side is above
+    none, start = np.full((1, 2), -1), np.array([-1e-9])
+    old, new = np.array([[0.99, above, 0.0]]), np.array([[1.01, -0.1, 0.0]])
+    left = times_of_crossing(piece, piece, none, old, new, np.array([0]), start, 1e-9)
+    assert np.isinf(left).all()
+    new[0, 0] = 0.9
+    through = times_of_crossing(piece, piece, none, old, new, np.array([0]), start, 1e-9)
+    assert through[0] == 0.0
+    new[0, 1] = -1e-12
+    rests = times_of_crossing(piece, piece, none, old, new, np.array([0]), start, 1e-9)
+    assert np.isinf(rests).all()

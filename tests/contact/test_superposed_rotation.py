@@ -12,18 +12,21 @@ from corota.model.contact import METHODS
 CASES = [
     (objectivity.drag, "rigid"),
     (objectivity.drag, "table master"),
+    (objectivity.drag, "short table master"),
     (objectivity.punch, "disc"),
+    (objectivity.rolled, "Q4I"),
+    (objectivity.stack, "upper slave"),
+    (objectivity.stack, "lower slave"),
 ]
 
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(("make", "role"), CASES)
-@pytest.mark.parametrize("degrees", [137.0, 400.0])
+@pytest.mark.parametrize("degrees", [90.0, 180.0, 400.0])
 def test_forces_turn_with_a_superposed_rotation(make, role, method, degrees):
     """In each of two increments, friction included; slips of whole turns belong to no body."""
     still = objectivity.measured(make(method, role), 0.0)
     turned = objectivity.measured(make(method, role), degrees)
     for kind, values in turned.items():
-        scale = max(float(np.abs(still[k]).max()) for k in ("gap", "slip", kind))
-        scale = scale if kind in ("gap", "slip") else float(np.abs(still[kind]).max())
+        scale = objectivity.scale_of(still, kind)
         np.testing.assert_allclose(values, still[kind], atol=objectivity.SAME * scale, err_msg=kind)

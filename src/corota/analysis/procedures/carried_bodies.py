@@ -3,7 +3,8 @@
 A correction of Newton's method is linear in the rotation: of a body that its supports carry round
 by a quarter turn it would make another shape. Bodies therefore start turned as their supports turn
 them, all of them where the motion of the first one carries them; how they move relative to it is
-left to the corrections. It is a second attempt, where the first one from the committed state fails.
+left to the corrections. So an increment with a superposed rotation is that without it, seen from
+a frame that turns. Where no equilibrium is found from there, the committed state is tried.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -26,7 +27,8 @@ if TYPE_CHECKING:
 #: Rotation in an increment [rad] from which bodies are carried, and displacement over the size of
 #: the model from which one looks.
 FAR, FAR_AWAY = 0.2, 0.1
-#: Largest part of the motion of its supports that a rigid motion of a body may leave over.
+#: What a rigid motion of a body may leave of that of its supports: over the size of the body, and
+#: over their motion by the rotation, where that alone says how far the body turns.
 DEFORMS = 0.2
 
 
@@ -57,12 +59,17 @@ def carried_bodies(system: System, u: Floats, prescribed: Floats) -> Floats | No
     body = _bodies(system)
     members = [np.flatnonzero(body == b) for b in range(body.max() + 1)]
     motions = [_motion(x[m], y[m], change[m, 2], given[m]) for m in members]
-    # Elastic bodies are numbered before reference nodes.
-    whole = next((motion for motion in motions if motion is not None), None)
-    far = [m is not None and abs(m[0]) > FAR for m in motions]
-    if whole is None or not any(
-        turns and len(mine) > 1 for mine, turns in zip(members, far, strict=True)
-    ):
+    known = [motion for motion in motions if motion is not None]
+    # Elastic bodies are numbered before reference nodes, which may turn against each other: which
+    # of them carries a body that all of them touch is not known then.
+    whole = known[0] if known else None
+    elastic = [len(mine) > 1 for mine in members]
+    supported = any(m is not None and e for m, e in zip(motions, elastic, strict=True))
+    agree = all(abs(m[0] - known[0][0]) <= FAR for m in known)
+    if whole is None or not (supported or agree):
+        return None
+    turns = [abs((m or whole)[0]) > FAR for m in motions]
+    if not any(e and t for e, t in zip(elastic, turns, strict=True)):
         return None
     angle, center, to = whole
     out: Floats = u.copy()
@@ -111,7 +118,10 @@ def _motion(
     else:
         return None
     left = float(np.abs(after - _turned(before, angle)).max())
-    if left > DEFORMS * float(np.abs(after - before).max()) and left > 1e-9 * extent:
+    most = float(np.ptp(x, axis=0).max())
+    if not given[:, 2].any():
+        most = min(most, abs(angle) * extent)
+    if left > DEFORMS * most + 1e-9 * extent:
         return None
     return angle, center, to
 

@@ -145,24 +145,24 @@ class StaticStepper(NewtonStepper):
         known = self.known(target)
         may_unload = self.remembers and self.control.attempt == 1
         turns = may_unload and self.load_may_turn(target)
+        contact: ContactIncrement | None = None
+        outcome = Outcome(False, state.u, None, reason="not begun")
         before = 0
-        if turns:
+        if step.nlgeom:
+            prescribed = system.conditions.supports.at(target, state.u)
+            carried = carried_bodies(system, state.u, prescribed)
+            if carried is not None:
+                outcome, contact = self.equilibrium(target, None, begin=carried)
+                before = outcome.iterations
+        if turns and outcome.reason:
             # The first correction with the tangent of flow would lead far away, and from there to
             # another equilibrium path.
-            outcome, contact = self.equilibrium(target, None, ELASTIC)
+            outcome, contact = self.equilibrium(target, None, ELASTIC, before)
+            outcome.iterations += before
             before = outcome.iterations
-        if not turns or outcome.reason:
+        if outcome.reason:
             outcome, contact = self.equilibrium(target, known, before=before)
             outcome.iterations += before
-        if outcome.reason and step.nlgeom:
-            u = state.u
-            turned = carried_bodies(system, u, system.conditions.supports.at(target, u))
-            if turned is not None:
-                again, its_contact = self.equilibrium(
-                    target, None, None, outcome.iterations, turned
-                )
-                again.iterations += outcome.iterations
-                outcome, contact = (outcome, contact) if again.reason else (again, its_contact)
         if outcome.reason and may_unload and (step.fixed_increments or not turns):
             # Where an increment can be cut, only elastic unloading is worth a second attempt: a
             # long increment of a softening body may end on another equilibrium path.
@@ -282,7 +282,7 @@ class StaticStepper(NewtonStepper):
         begin = state.u if begin is None else begin
         if first is not None:
             settings = replace(settings, search=True, first=first)
-        if first is not None or before:
+        if first is not None or before or begin is not state.u:
             how = TURNED if begin is not state.u else UNLOADING if first is not None else ""
             report = _continued(report, before, how)
         try:

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 #: Fraction of the reach that a node may move without this check.
 UNSEEN = 0.5
+#: Depth over the reach up to which a node touches: a rest of Newton's method, as where a node of
+#: the other side carries both.
+TOUCHES = 1e-8
 #: Rotation of a side in an increment [rad] up to which its ways count as straight.
 TURNS = 0.2
 #: Nodes times pieces that are compared at once.
@@ -88,7 +91,9 @@ def passed(
         closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
         through = through[~closed[through]]
         start = starts()[through]
-        share = times_of_crossing(first, end, ends, old, seen, nodes[through], start)
+        share = times_of_crossing(
+            first, end, ends, old, seen, nodes[through], start, TOUCHES * pair.reach
+        )
         through = through[share < math.inf]
     return through
 
@@ -112,7 +117,7 @@ def outside(term: Any, k: int, moves: bool) -> Floats:
     after the impact.
     """
     pair, committed = term.pairs[k], None if term.at is None else term.at.states
-    start = np.full(pair.n, -pair.noise)
+    start = np.full(pair.n, -TOUCHES * pair.reach)
     if moves and math.isfinite(pair.depth):
         behind = pair.gaps_at(term, k, term.positions(term.u)).gap < 0.0
         if committed:
@@ -183,6 +188,7 @@ def times_of_crossing(
     new: Floats,
     nodes: Ints,
     start: Floats,
+    depth: float = 0.0,
 ) -> Floats:
     """Shares of the way after which nodes go through a piece from outside; inf if they do not.
 
@@ -197,13 +203,16 @@ def times_of_crossing(
     nodes : ndarray of int, shape (k,)
     start : ndarray, shape (k,)
         Distance at which the outer side begins for each.
+    depth : float
+        Distance from a piece, at the start and at the end, that is none.
     """
     out = np.full(len(nodes), math.inf)
     x, y = old[nodes, :2], new[nodes, :2]
     for k, piece in _near(first, last, x, y, np.maximum(-start, 0.0)):
         a, b = _side(first[piece], x[k]), _side(last[piece], y[k])
-        through = (a > start[k]) & (b < 0.0) & (ends[piece] != nodes[k, None]).all(axis=1)
-        k, piece, a, b = k[through], piece[through], np.maximum(a[through], 0.0), b[through]
+        through = (a > start[k]) & (b < -depth) & (ends[piece] != nodes[k, None]).all(axis=1)
+        k, piece, a, b = k[through], piece[through], a[through], b[through]
+        a[a <= depth] = 0.0
         share = a / (a - b)
         t = share[:, None]
         met = first[piece] + t[:, :, None] * (last[piece] - first[piece])
