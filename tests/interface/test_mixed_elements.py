@@ -59,3 +59,12 @@ def test_allowables_are_named_in_any_case() -> None:
     model.section(element="Q4I", material=STEEL)
     model.stage("right", axis="x", allowable={"mises": 2.0})
     assert model.stages[0].allowable == {"MISES": 2.0}
+
+
+def test_a_run_without_a_load_says_so() -> None:
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, nx=1, ny=1))
+    model.section(element="Q4I", material=STEEL)
+    model.fix("left")
+    assert any("nothing moved" in note for note in ct.solve(model).notes)
+    model.force("right", x=1.0)
+    assert not any("nothing moved" in note for note in ct.solve(model).notes)

@@ -171,7 +171,7 @@ def test_velocities_are_a_history_from_the_first_dynamic_step_on(model: ct.Model
 
 
 def test_every_name_that_the_page_of_results_lists_is_a_history() -> None:
-    from corota.results.table import COMPONENTS, INVARIANTS, NODAL
+    from corota.results.table import COMPONENTS, HARMONIC, INVARIANTS, NODAL
 
     moving = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=4, ny=1))
     moving.section(
@@ -183,7 +183,16 @@ def test_every_name_that_the_page_of_results_lists_is_a_history() -> None:
     step.force("right", y=1e-3)
     step.temperature(1.0)
     results = ct.solve(moving, step, threads=1)
-    for name in [*NODAL, *(c for c in COMPONENTS if c[0] in "SE"), *INVARIANTS, "PEEQ", "ENER"]:
+    tensors = [name for name, (tensor, _) in COMPONENTS.items() if tensor in ("S", "E")]
+    nodal = [name for name in NODAL if name not in HARMONIC]
+    for name in [*nodal, *tensors, *INVARIANTS, "PEEQ", "ENER"]:
+        assert np.isfinite(results.history(name)[-1]), name
+    moving.contacts.clear()
+    shaken = ct.SteadyState(lowest=0.1, highest=0.2, points=2, damping=0.01)
+    shaken.force("right", y=1e-3)
+    results = ct.solve(moving, [ct.Frequency(modes=1), shaken], threads=1)
+    amplitudes = [name for name, (tensor, _) in COMPONENTS.items() if tensor == "SA"]
+    for name in [*HARMONIC, *amplitudes, "MISESA"]:
         assert np.isfinite(results.history(name)[-1]), name
 
 

@@ -229,6 +229,11 @@ class Analysis:
         self.start = None if start is None else start.part(self.communicator)
         self.resumed = self.start
 
+    def _without_cause(self) -> bool:
+        """Whether neither the model nor a step has a load or a moving support."""
+        owners = [self.model, *self.steps]
+        return not any(o.loads or any(s.value for s in o.supports) for o in owners)
+
     def run(self) -> Results:
         """Run all steps; observers are always notified of the end."""
         results, begin = self.results, clock.perf_counter()
@@ -269,6 +274,8 @@ class Analysis:
                 if state.energies.made_by_contact:
                     warnings.warn(remark, stacklevel=3)
             results.notes += missed_peaks(self.pair_forces, self.model.contacts)
+            if not state.u.any() and not results.modes and self._without_cause():
+                results.notes.append("nothing moved: no step has a load or a moving support")
         except MemoryError:
             error = ResourceError(f"{SHORT}. All increments before are kept")
             error.results = results
