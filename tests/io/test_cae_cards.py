@@ -401,3 +401,19 @@ def test_perturbations_of_other_states_are_refused(
 ) -> None:
     with pytest.raises(ct.DeckError, match=said):
         read(tmp_path, LOAD_CASES.format(law=law) + steps)
+
+
+@pytest.mark.parametrize(
+    "words", ["VISCOUS=FRACTION OF CRITICAL DAMPING", "DEFINITION=MODE NUMBERS"]
+)
+def test_modal_damping_in_the_words_of_abaqus(tmp_path: Path, words: str) -> None:
+    """They say what is the default; other ones are refused."""
+    motion = "*BASE MOTION, DOF=1, AMPLITUDE=A\n*MODAL DAMPING{}\n1, 1, .1"
+    found = []
+    for said in ("", f", {words}"):
+        text = OSCILLATOR.format(procedure="*MODAL DYNAMIC\n.01, .5", motion=motion.format(said))
+        found.append(ct.solve(read(tmp_path, text), threads=1).frames[-1].U)
+    assert np.array_equal(found[0], found[1])
+    other = motion.format(", VISCOUS=COMPOSITE")
+    with pytest.raises(ct.DeckError, match="COMPOSITE is not known"):
+        read(tmp_path, OSCILLATOR.format(procedure="*MODAL DYNAMIC\n.01, .5", motion=other))

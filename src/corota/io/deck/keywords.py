@@ -219,7 +219,7 @@ _TABLE: dict[str, Keyword] = {
     "STEADY STATE DYNAMICS": Keyword(
         card("dynamic.steady_state"), "DIRECT", "SOLVER FREQUENCYSCALE INTERVAL FRICTIONDAMPING"
     ),
-    "MODAL DAMPING": Keyword(card("dynamic.modal_damping"), "RAYLEIGH", "MODAL"),
+    "MODAL DAMPING": Keyword(card("dynamic.modal_damping"), "RAYLEIGH VISCOUS DEFINITION", "MODAL"),
     "DAMPING": Keyword(card("dynamic.damping"), "ALPHA BETA", place="model"),
     "MASS": Keyword(card("attachments.mass"), "ELSET", place="model"),
     "ROTARY INERTIA": Keyword(card("attachments.rotary_inertia"), "ELSET", place="model"),

@@ -248,6 +248,10 @@ def modal_damping(deck: Deck, card: Card) -> None:
             hint="*DAMPING, ALPHA=, BETA= damps the other procedures",
         )
         return
+    # Abaqus's words for what is the default.
+    viscous = ("FRACTIONOFCRITICALDAMPING",)
+    deck.choice(card, "VISCOUS", viscous, viscous[0])
+    deck.choice(card, "DEFINITION", ("MODENUMBERS",), "MODENUMBERS")
     for row in card.rows():
         if card.has("RAYLEIGH"):
             alpha = deck.real(card, row, 2, "alpha", 0.0)
