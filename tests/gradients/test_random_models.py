@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.gradients import NAMES, Case, compare
+from benchmarks.gradients import NAMES, Case, compare, draw
 from corota import gradients
 
 CASES = [
@@ -151,3 +151,8 @@ def test_contact_and_ties(kind: str, method: str) -> None:
         far = function(x + 2.0 * step)[0] - function(x - 2.0 * step)[0]
         difference = (8.0 * near - far) / 12e-3
         assert (np.abs(difference - exact[:, k]) / size).max() < 1e-7
+
+
+def test_a_reaction_that_is_gone_has_a_gradient() -> None:
+    """Rounding of a force that the second step takes away is no kink: a beam by its thickness."""
+    assert compare(draw(115), [NAMES.index("thickness")]) < 1e-7

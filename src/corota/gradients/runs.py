@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 SYMMETRY = 1e-7
 #: Least size of a sum of forces, over the largest of them.
 FORCE_FLOOR = 1e-8
+#: Share of the largest force whose rounding, by `differences.ROUNDING`, is that of every force.
+ROUNDED = 1e-3
 #: Relative difference of the results of second and fourth order that shows a kink.
 KINK = 1e-4
 
@@ -200,7 +202,7 @@ class Run:
             raise InputError("a varied model must have the steps of the first one, and their times")
         if not np.array_equal(other.system.start, self.trajectory.system.start):
             raise InputError("a varied model must have the mesh and the dofs of the first one")
-        total, size = np.zeros((2, 2 * len(self.leaves)))
+        total, size, largest = np.zeros((3, 2 * len(self.leaves)))
         needed, own = self._needed()
         for point in other.walk(needed, given=True):
             adjoint = own.get(id(point.increment))
@@ -208,8 +210,7 @@ class Run:
                 continue
             total += point.reaction @ adjoint.weights
             size += point.at.scale @ np.abs(adjoint.weights)
-            # What symmetry makes zero exactly has a size, too.
-            size += FORCE_FLOOR * point.at.scale.max() * np.abs(adjoint.weights).sum(axis=0)
+            largest += point.at.scale.max() * np.abs(adjoint.weights).sum(axis=0)
             for column, leaf in adjoint.measures:
                 direct = leaf.direct(point)
                 total[column] += direct
@@ -229,8 +230,9 @@ class Run:
                     pairs = list(zip(weights, new, strict=False))
                     total[column] += sum(w @ h for w, h in pairs)
                     size[column] += sum(np.abs(w) @ np.abs(h) for w, h in pairs)
-        self.sizes = size
-        return total, size
+        # What symmetry makes zero exactly has a size, too.
+        self.sizes = size + FORCE_FLOOR * largest
+        return total, size + ROUNDED * largest
 
     def _off_control(self, adjoint: Adjoint, point: Point) -> Floats:
         """Weighted difference of a controlled displacement from what the path prescribes."""
