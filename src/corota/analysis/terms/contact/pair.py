@@ -401,7 +401,12 @@ class Pair:
         Closed constraints have no linearized gap after the `last` correction: their pressure alone
         decides.
         """
-        found: NDArray[np.int8] = self.conditions.states(self._at(terms), p, q, last)
+        at = self._at(terms)
+        if self.friction:
+            # What begins to touch sticks: rounding alone is no slip.
+            rests = (p == 0.0) & (q == 0.0) & (np.abs(terms.slip) <= self.noise * self.full)
+            at = at[0], np.where(rests, 0.0, terms.slip), *at[2:]
+        found: NDArray[np.int8] = self.conditions.states(at, p, q, last)
         adhering = self.adhering
         if adhering is not None and self.friction:
             # Under tension there is no friction, whichever way the surfaces slide.
