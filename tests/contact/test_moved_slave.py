@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -73,6 +74,47 @@ def test_a_node_moved_up_a_bowl(x: float, friction: float) -> None:
     exact = WEIGHT * math.tan(math.asin(x / 2.0) + math.atan(friction))
     assert frame.RF[0, 0] == pytest.approx(exact)
     assert frame.U[0, 1] == pytest.approx(2.0 - math.sqrt(4.0 - x * x))
+
+
+@pytest.mark.parametrize("path", [(1.2, 0.6), (0.5, -0.25, -0.3)])
+@pytest.mark.parametrize("stiffness", [1e-9, 1e-3])
+def test_a_node_without_stiffness_that_is_drawn_back(stiffness: float, path: Any) -> None:
+    """``H = W tan(slope +- angle of friction) + k x``: friction turns round with the motion."""
+    nodes = np.array([[0.0, 0.0], [0.0, 2.0]])
+    model = ct.Model(Mesh(nodes, [Cells("line2", np.array([[1, 0]]), np.array([1]))]))
+    model.spring([0], stiffness, "x x")
+    model.fix([1])
+    model.force([0], y=-WEIGHT)
+    bowl = ct.RigidCurve.circle((0.0, 2.0), 2.0, inside=True)
+    model.contact([0], bowl, friction=FRICTION)
+    steps = []
+    for x in path:
+        step = ct.Static()
+        step.fix([0], x=x, y=None)
+        steps.append(step)
+    results = ct.solve(model, steps, threads=1)
+    at = 0.0
+    for number, x in enumerate(path, 1):
+        frame = next(f for f in reversed(results.frames) if f.step == number)
+        way = math.copysign(math.atan(FRICTION), x - at)
+        exact = WEIGHT * math.tan(math.asin(x / 2.0) + way) + stiffness * x
+        assert frame.RF[0, 0] == pytest.approx(exact, rel=1e-6)
+        at = x
+
+
+def test_a_spring_may_end_behind_a_rigid_curve() -> None:
+    """A node on a floor, drawn aside by a spring to a point below it: ``k d = mu W`` of the way of
+    the point is left when the node slides."""
+    nodes = np.array([[0.0, 0.0], [0.0, -2.0]])
+    model = ct.Model(Mesh(nodes, [Cells("line2", np.array([[1, 0]]), np.array([1]))]))
+    model.spring([0], 5.0, "x x")
+    model.fix([1], x=1.0, y=0.0)
+    model.force([0], y=-WEIGHT)
+    floor = ct.RigidCurve.line((-50.0, 0.0), (50.0, 0.0))
+    model.contact([0], floor, friction=FRICTION)
+    frame = ct.solve(model, threads=1).frames[-1]
+    assert frame.U[0, 0] == pytest.approx(1.0 - FRICTION * WEIGHT / 5.0)
+    assert frame.RF[1, 0] == pytest.approx(FRICTION * WEIGHT)
 
 
 def test_a_wedge_is_driven_under_a_block() -> None:

@@ -3,6 +3,7 @@
 
 use super::curve::{Curve, Edge, Shape, Vec2, dot, sub};
 use super::master::{Master, Surface};
+use super::travel::{near, way_round};
 use std::collections::HashMap;
 
 /// Distance of two ends that are one point, in lengths of the pieces that meet there.
@@ -97,18 +98,18 @@ impl Boundary {
         self.start[member] + self.members[member].length(r)
     }
 
-    /// The way from one arc length of a part to another, the shorter one round a closed part.
-    pub fn way(&self, part: usize, from: f64, to: f64) -> f64 {
+    /// The way from one arc length of a part to another: round a closed part the shorter one, unless
+    /// its place turned about the body by more than half a turn.
+    pub fn way(&self, part: usize, from: f64, to: f64, turn: f64) -> f64 {
         let (way, round) = (to - from, self.round[part]);
-        if round.is_finite() { way - round * (way / round).round() } else { way }
+        if !round.is_finite() {
+            return way;
+        }
+        way_round(near(way, 0.0, round), round, self.sense[part], turn)
     }
 
     pub fn round(&self, part: usize) -> f64 {
         self.round[part]
-    }
-
-    pub fn sense(&self, part: usize) -> f64 {
-        self.sense[part]
     }
 
     /// Length of the longest member.

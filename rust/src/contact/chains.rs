@@ -3,6 +3,8 @@
 
 use super::curve::{GAUSS, dot};
 use super::master::{Master, Surface};
+use super::travel::way_round;
+use std::f64::consts::PI;
 
 /// Distance of two ends that are one point, in lengths of the faces that meet there.
 const SAME: f64 = 1e-6;
@@ -11,8 +13,9 @@ const SAME: f64 = 1e-6;
 pub struct Chains {
     next: Vec<Option<usize>>,
     previous: Vec<Option<usize>>,
-    /// Number of the chain of each face.
+    /// Number of the chain of each face, first of those that end.
     chain: Vec<usize>,
+    ending: usize,
     /// Whether no other face of the same side is at the first and the second end.
     free: Vec<[bool; 2]>,
 }
@@ -59,6 +62,7 @@ impl Chains {
             }
         }
         let mut chain = vec![usize::MAX; n];
+        let ending = previous.iter().filter(|p| p.is_none()).count();
         let starts = (0..n).filter(|&j| previous[j].is_none()).chain(0..n);
         for (number, first) in starts.enumerate() {
             let mut at = Some(first);
@@ -67,7 +71,7 @@ impl Chains {
                 at = next[j];
             }
         }
-        Self { next, previous, chain, free }
+        Self { next, previous, chain, ending, free }
     }
 
     pub fn next(&self, j: usize) -> Option<usize> {
@@ -83,14 +87,44 @@ impl Chains {
         self.chain[j] == self.chain[k]
     }
 
+    /// Whether the chain of a face closes.
+    pub fn closed(&self, j: usize) -> bool {
+        self.chain[j] >= self.ending
+    }
+
     /// Whether nothing continues a face at its first or second end.
     pub fn free(&self, j: usize, which: usize) -> bool {
         self.free[j][which]
     }
 
     /// Way along a chain from a place on a face to one on another; backwards it is negative. Of a
-    /// closed chain the shorter one.
+    /// closed chain the shorter one, unless the place turned about the body by more than half a turn.
     pub fn between(
+        &self,
+        faces: &Surface,
+        from: (usize, f64),
+        to: (usize, f64),
+        x: &[[f64; 3]],
+        turn: f64,
+    ) -> f64 {
+        let way = self.shorter(faces, from, to, x);
+        if turn.abs() <= PI || !self.closed(from.0) {
+            return way;
+        }
+        let (mut round, mut twice, mut at) = (0.0, 0.0, from.0);
+        loop {
+            let face = faces.place(at, x);
+            let (p, q) = (face.end(0), face.end(1));
+            round += arc_length(&face, -1.0, 1.0);
+            twice += p[0] * q[1] - p[1] * q[0];
+            at = self.next[at].expect("a closed chain");
+            if at == from.0 {
+                return way_round(way, round, f64::signum(twice), turn);
+            }
+        }
+    }
+
+    fn shorter(
         &self,
         faces: &Surface,
         (j, from): (usize, f64),

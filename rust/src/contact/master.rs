@@ -320,6 +320,15 @@ impl Surface {
         self.len() == 0
     }
 
+    /// The rigid body, if the members of the master are its.
+    pub fn rigid(&self) -> Option<&Rigid> {
+        match self {
+            Self::Edges(_) => None,
+            Self::Rigid(rigid) => Some(rigid),
+            Self::Both(first, _) => first.rigid(),
+        }
+    }
+
     pub fn variables(&self, j: usize) -> Vec<i64> {
         match self {
             Self::Edges(edges) => edges[j].variables(),

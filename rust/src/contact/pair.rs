@@ -222,7 +222,7 @@ impl Contact {
             if self.method.has_stations() {
                 self.begin(old, closed, x);
             } else {
-                self.start.hold(old);
+                self.start.hold(&self.sides, old, x);
             }
         }
         let start = old.map(|_| &self.start);
@@ -258,10 +258,10 @@ impl Contact {
         self.method.hold(&self.sides, held);
     }
 
-    /// Take the node whose rotation is that of the slave's body, of which positions show no whole
-    /// turns.
-    pub fn carry(&mut self, node: u32) {
-        self.start.carrier = Some(node);
+    /// Take the nodes whose rotations are those of the bodies of slave and master, of which positions
+    /// show no whole turns.
+    pub fn carry(&mut self, nodes: [Option<u32>; 2]) {
+        self.start.carriers = nodes;
     }
 
     /// Keeps the masters of the constraints as those to return to.

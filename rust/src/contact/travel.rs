@@ -6,7 +6,8 @@
 //! same slave point if it was closed, or a closed place towards which the gap falls along the slave,
 //! from which contact has rolled or slid; else the place that was opposite to it. Lengths are those at the beginning, with which surfaces
 //! are laid on each other. The motion enters through the pairing alone, so that no rotation gives
-//! slip, and a path round a drum or a corner counts in full.
+//! slip, and a path round a drum or a corner counts in full. Positions show no whole turns: those of a
+//! body round which a path closes are those of a node that turns with it, if there is one.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::boundary::{Boundary, followers};
@@ -15,7 +16,7 @@ use super::master::{Master, Surface};
 use super::search::Search;
 use super::sides::Sides;
 use std::collections::HashMap;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Difference of two gaps, in edges, that is rounding.
 const EQUAL: f64 = 1e-9;
@@ -56,12 +57,10 @@ pub struct Start {
     closed: Vec<bool>,
     /// Whether nothing has moved since.
     still: bool,
-    /// Node whose rotation is that of the slave's body.
-    pub(super) carrier: Option<u32>,
-    /// Rotation since of the slave's body, and of the master relative to it, if that is a rigid body
-    /// with a node.
-    carried: f64,
-    turned: f64,
+    /// Nodes whose rotations are those of the slave's and the master's body.
+    pub(super) carriers: [Option<u32>; 2],
+    /// Rotations since of both bodies, where they are known.
+    turned: [Option<f64>; 2],
     next: Option<[Vec<Option<usize>>; 2]>,
     sides: Option<[Boundary; 2]>,
     /// By connected parts of both sides, in the order of the slave's arc length.
@@ -81,15 +80,7 @@ impl Start {
         x: &[[f64; 3]],
     ) -> bool {
         self.still = x == old;
-        let rotation =
-            |node: Option<u32>| node.map_or(0.0, |n| x[n as usize][2] - old[n as usize][2]);
-        (self.carried, self.turned) = match &sides.master {
-            Surface::Rigid(rigid) if rigid.turns => {
-                let carried = rotation(self.carrier);
-                (carried, rotation(rigid.node) - carried)
-            }
-            _ => (0.0, 0.0),
-        };
+        self.turn(sides, old, x);
         if self.still || (self.sides.is_some() && self.x == old && self.closed == closed) {
             return false;
         }
@@ -106,8 +97,23 @@ impl Start {
         true
     }
 
+    /// Takes how far the bodies of both sides have turned.
+    fn turn(&mut self, sides: &Sides, old: &[[f64; 3]], x: &[[f64; 3]]) {
+        let rotation = |node: u32| x[node as usize][2] - old[node as usize][2];
+        self.turned = self.carriers.map(|node| node.map(rotation));
+        if let Some(rigid) = sides.master.rigid() {
+            self.turned[1] = Some(rigid.node.filter(|_| rigid.turns).map_or(0.0, rotation));
+        }
+    }
+
+    /// Rotations of the bodies of slave and master, where they are known.
+    pub fn turned(&self) -> [Option<f64>; 2] {
+        self.turned
+    }
+
     /// Takes where the sides were, where no station is needed.
-    pub fn hold(&mut self, old: &[[f64; 3]]) {
+    pub fn hold(&mut self, sides: &Sides, old: &[[f64; 3]], x: &[[f64; 3]]) {
+        self.turn(sides, old, x);
         self.old.clear();
         self.old.extend_from_slice(old);
     }
@@ -175,15 +181,11 @@ impl Start {
             (None, Some(list)) => self.origin(list, parts.0, (edge, xi, now.a)),
             (None, None) => return 0.0,
         };
-        let mut along = master.way(parts.1, then.m, now.m);
-        let round = master.round(parts.1);
-        if round.is_finite() && self.turned != 0.0 {
-            // A body on the left of a way round it turns it by a whole turn, to the left or right.
-            let seen = now.heading - then.heading - self.carried;
-            let turn = seen - TAU * (seen / TAU).round() - self.turned;
-            along += round * (master.sense(parts.1) * turn / TAU - along / round).round();
-        }
-        -(slave.way(parts.0, then.a, now.a) + along)
+        let closed = [slave.round(parts.0), master.round(parts.1)].map(f64::is_finite);
+        let followed = followed(self.turned.map(|turn| turn.unwrap_or(0.0)), closed);
+        let heading = near(now.heading - then.heading, followed, TAU);
+        let turn = |side: usize| self.turned[side].map_or(0.0, |turn| heading - turn);
+        -(slave.way(parts.0, then.a, now.a, turn(0)) + master.way(parts.1, then.m, now.m, turn(1)))
     }
 
     /// Where the surfaces touched from which a slave point came.
@@ -192,7 +194,7 @@ impl Start {
         let n = list.len();
         let ends = |s: &Station| s.span.map(|r| slave.at(s.edge, r));
         let outside = |s: &Station| {
-            let [low, high] = ends(s).map(|e| slave.way(part, e, a));
+            let [low, high] = ends(s).map(|e| slave.way(part, e, a, 0.0));
             if low >= 0.0 && high <= 0.0 { 0.0 } else { low.abs().min(high.abs()) }
         };
         let after = list.partition_point(|s| ends(s)[0] <= a);
@@ -221,7 +223,7 @@ impl Start {
                 };
                 (i < n && i != at).then_some(i).filter(|&i| {
                     let (p, q) = if up { (at, i) } else { (i, at) };
-                    slave.way(part, ends(&list[p])[1], ends(&list[q])[0]).abs() <= NEXT * step
+                    slave.way(part, ends(&list[p])[1], ends(&list[q])[0], 0.0).abs() <= NEXT * step
                 })
             };
             let lower = [beside(false), beside(true)]
@@ -241,7 +243,7 @@ impl Start {
             xi.clamp(found.span[0], found.span[1])
         } else {
             let from = if at == begun { a } else { ends(&list[last])[0] };
-            let [low, high] = ends(found).map(|e| slave.way(part, from, e).abs());
+            let [low, high] = ends(found).map(|e| slave.way(part, from, e, 0.0).abs());
             if low <= high { found.span[0] } else { found.span[1] }
         };
         self.place(found, r)
@@ -263,6 +265,30 @@ pub fn ray(slave: &Master<f64>, xi: f64, master: &Master<f64>) -> f64 {
     let Master::Curve(edge) = slave else { unreachable!("a slave has edges") };
     let t = edge.slope(xi);
     master.ray(edge.at(xi), t, unit(outward(t))).r
+}
+
+/// The rotation that the direction of the place of contact follows: it stays with the side that does
+/// not close round its body, else with the one that turns less; of two that end, with the one that
+/// is known to turn.
+pub fn followed([slave, master]: [f64; 2], closed: [bool; 2]) -> f64 {
+    match closed {
+        [false, true] => slave,
+        [true, false] => master,
+        [true, true] => slave.min(master).max(0.0) + slave.max(master).min(0.0),
+        [false, false] if slave.abs() > master.abs() => slave,
+        [false, false] => master,
+    }
+}
+
+/// A value that is known up to multiples of a period, near another one.
+pub fn near(value: f64, other: f64, period: f64) -> f64 {
+    value + period * ((other - value) / period).round()
+}
+
+/// The way along a boundary of a length, of which the shorter one is known, of a place whose
+/// direction turned about the body by an angle: by a whole turn to the left on a solid round.
+pub fn way_round(way: f64, round: f64, sense: f64, turn: f64) -> f64 {
+    if turn.abs() > PI { near(way, sense * turn / TAU * round, round) } else { way }
 }
 
 fn angle(n: Vec2<f64>) -> f64 {

@@ -404,9 +404,9 @@ impl Contact {
         Ok(())
     }
 
-    /// Take the node whose rotation is that of the slave's body.
-    fn carry(&mut self, node: u32) {
-        self.pair.carry(node);
+    /// Take the nodes whose rotations are those of the bodies of slave and master, if there are any.
+    fn carry(&mut self, slave: Option<u32>, master: Option<u32>) {
+        self.pair.carry([slave, master]);
     }
 
     /// Remember the masters of the nodes (node_to_segment).

@@ -23,11 +23,11 @@ use super::super::search::{Candidate, Item, each};
 use super::super::sides::Sides;
 use super::super::slave::Slave;
 use super::super::terms::{Function, Share, Terms, WIDTH, join, lifted};
-use super::super::travel::Start;
+use super::super::travel::{Start, followed, near};
 use super::node_to_segment::open;
 use super::{Discretization, Entry};
 use crate::base::Smooth;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 pub const ENTRY: Entry = Entry {
     name: "line",
@@ -106,6 +106,8 @@ pub struct Lines {
     n_nodes: usize,
     /// Slave node next to each circle at the start, by its place in the slave's nodes.
     nearest: Vec<usize>,
+    /// A face of the side of each circle that it belongs to.
+    beside: Vec<Option<usize>>,
     /// Faces: members of the master, then edges of the slave.
     faces: Surface,
     n_master: usize,
@@ -156,11 +158,22 @@ impl Lines {
                     .expect("a slave has nodes")
             })
             .collect();
+        let beside = circles
+            .iter()
+            .map(|circle| match circle.center {
+                Center::Node(n) => {
+                    let of_node = |e: &Edge| e.nodes().contains(&n);
+                    slave.edges.iter().position(of_node).map(|i| n_master + i)
+                }
+                Center::End(j, _) | Center::Arc(j) => Some(j),
+            })
+            .collect();
         let n = circles.len();
         Self {
             circles,
             n_nodes,
             nearest,
+            beside,
             faces: faces.clone(),
             n_master,
             half,
@@ -409,7 +422,7 @@ impl Lines {
         i: usize,
         met: &Meeting,
         x: &[[f64; 3]],
-        old: Option<&[[f64; 3]]>,
+        start: Option<&Start>,
     ) -> Terms {
         let variables = self.variables(sides, (i, met.face));
         let v = lifted::<OWN>(&variables, x);
@@ -440,7 +453,8 @@ impl Lines {
             (if met.right { gap } else { -gap }) - width
         };
         let area = sides.slave.area[self.nearest[i]];
-        let slip = old.and_then(|old| {
+        let slip = start.and_then(|start| {
+            let old = start.old();
             let before = self.before(sides, i, met.face, old)?;
             let spun = match circle.center {
                 Center::Node(n) => old[n as usize][2],
@@ -450,7 +464,7 @@ impl Lines {
             let turn = turned - Smooth::real(spun);
             let base = if other == 3 { old[variables[from] as usize / 3][2] } else { 0.0 };
             let rigid = (other == 3).then(|| v[from + 2] - Smooth::real(base));
-            Some(self.slip(sides, (i, met, &before), (p, turn), (&shape, rigid), [x, old]))
+            Some(self.slip(sides, (i, met, &before), (p, turn), (&shape, rigid), (x, start)))
         });
         let share = Share {
             constraint: i,
@@ -468,9 +482,9 @@ impl Lines {
         (i, met, before): (usize, &Meeting, &Meeting),
         (p, turn): (Vec2<T>, T),
         (shape, rigid): (&Master<T>, Option<T>),
-        [x, old]: [&[[f64; 3]]; 2],
+        (x, start): (&[[f64; 3]], &Start),
     ) -> T {
-        let faces = &sides.master;
+        let (faces, old) = (&sides.master, start.old());
         let then = faces.place(before.face, old);
         let q = place(self.circles[i].center, faces, old);
         let normal = Self::normal(shape, met, p);
@@ -486,18 +500,26 @@ impl Lines {
             }
             _ => T::real(0.0),
         };
-        // Angles are known up to whole turns: the normal turns with the face or with the circle.
-        let known = if rigid.is_some() { rotation.value() } else { turn.value() };
-        let whole =
-            |a: T, near: f64| a + T::real(2.0 * PI * ((near - a.value()) / (2.0 * PI)).round());
-        let tilt = whole(tilt, known);
-        let rotation = if rigid.is_some() { rotation } else { whole(rotation, tilt.value()) };
+        // Angles are known up to whole turns.
+        let whole = |a: T, other: f64| a + T::real(near(a.value(), other, TAU) - a.value());
+        let [slave, master] = start.turned();
+        let (own, other) = if i < self.n_nodes { (slave, master) } else { (master, slave) };
+        let spins =
+            [own.unwrap_or(turn.value()), other.unwrap_or_else(|| spin(faces, met.face, [x, old]))];
+        let closed =
+            [self.beside[i], Some(met.face)].map(|j| j.is_some_and(|j| self.chains.closed(j)));
+        let tilt = whole(tilt, followed(spins, closed));
+        let rotation = match rigid {
+            Some(rotation) => rotation,
+            None => whole(rotation, other.unwrap_or(tilt.value())),
+        };
+        let around = tilt.value() - rotation.value();
         let sign = if met.right { 1.0 } else { -1.0 };
         let (radius, half) = (self.circles[i].radius, self.half[met.face]);
         let along = match (shape, met.end) {
             (Master::Arc(a), None) => {
                 (tilt - rotation).scale(a.signed_radius())
-                    + T::real(self.jump(faces, (before, met), x, tilt.value() - rotation.value()))
+                    + T::real(self.jump(faces, (before, met), x, around))
             }
             (_, None) => {
                 let hit = shape.closest(p);
@@ -508,11 +530,13 @@ impl Lines {
                         (before.face, before.r),
                         (met.face, met.r),
                         x,
+                        around,
                     ))
             }
             (_, Some(end)) => {
                 let r = if end == 0 { -1.0 } else { 1.0 };
-                T::real(self.chains.between(faces, (before.face, before.r), (met.face, r), x))
+                let from = (before.face, before.r);
+                T::real(self.chains.between(faces, from, (met.face, r), x, around))
             }
         };
         -along.scale(sign) - (tilt - rotation).scale(half) - (tilt - turn).scale(radius)
@@ -528,10 +552,11 @@ impl Lines {
     ) -> f64 {
         let Master::Arc(a) = faces.place(met.face, x) else { return 0.0 };
         match faces.place(before.face, x) {
-            Master::Arc(b) if b.same_circle(&a) => 0.0,
+            Master::Arc(b) if b.same_circle(&a) && turn.abs() <= PI => 0.0,
             _ => {
                 let from = (before.face, before.r);
-                self.chains.between(faces, from, (met.face, met.r), x) - turn * a.signed_radius()
+                self.chains.between(faces, from, (met.face, met.r), x, turn)
+                    - turn * a.signed_radius()
             }
         }
     }
@@ -544,6 +569,13 @@ fn angle<T: Smooth>(a: Vec2<T>, from: Vec2<f64>) -> T {
     // About its own value the angle is the quotient, to second order.
     let along: Vec2<T> = fixed(unit(plain));
     T::real(value) + dot(a, [-along[1], along[0]]) / dot(a, along)
+}
+
+/// Rotation since of the nodes of a face.
+fn spin(faces: &Surface, face: usize, [x, old]: [&[[f64; 3]]; 2]) -> f64 {
+    let Some(edge) = faces.edge(face) else { return 0.0 };
+    let turn = |&n: &u32| x[n as usize][2] - old[n as usize][2];
+    0.5 * edge.nodes[..2].iter().map(turn).sum::<f64>()
 }
 
 fn place(center: Center, faces: &Surface, x: &[[f64; 3]]) -> Vec2<f64> {
@@ -674,7 +706,6 @@ impl Discretization for Lines {
     }
 
     fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
-        let old = start.map(Start::old);
         let found = each(sides.n_items(), |i| self.choose(sides, i, x));
         for (i, met) in found.iter().enumerate() {
             self.seen[i] = met.map(|m| (m.face, m.next));
@@ -682,7 +713,7 @@ impl Discretization for Lines {
         }
         let met: Vec<(usize, Meeting)> =
             found.iter().enumerate().filter_map(|(i, m)| m.map(|m| (i, m))).collect();
-        each(met.len(), |k| self.terms(sides, met[k].0, &met[k].1, x, old))
+        each(met.len(), |k| self.terms(sides, met[k].0, &met[k].1, x, start))
     }
 
     fn commit(&mut self) {

@@ -117,6 +117,8 @@ class SaddlePointSystem:
         #: Distance by which supports violate each constraint that they fix, after the last
         #: correction [length].
         self.left: Floats = np.zeros(n)
+        #: The same of constraints that were dropped since others and supports fix them together.
+        self.left_by_others: Floats = np.zeros(n)
 
     # -- pattern -----------------------------------------------------------------------
 
@@ -223,6 +225,7 @@ class SaddlePointSystem:
             self.left = np.zeros(self.n)
             self.left[fixed] = b[fixed + self.nf, 0] / length
             self.left = self.communicator.broadcast(self.left)
+            self.left_by_others = np.zeros(self.n)
             self._take_out(fixed, data, b, release)
             on = self.diagonal[constrained]
             # Rounding, as of a rigid circle that turns about its center, is no pivot.
@@ -237,12 +240,14 @@ class SaddlePointSystem:
             dropped = self.communicator.broadcast(self._dependent(data))
             if not len(dropped):
                 raise self._named(error) from None
+            rows, sides = data.copy(), b[dropped + self.nf, 0]
             self._take_out(dropped, data, b, np.zeros_like(release))
             fixed = np.concatenate([fixed, dropped])
             try:
                 x, negative = self._solve(data, rest, b)
             except SingularError as again:
                 raise self._named(again) from None
+            self.left_by_others[dropped] = self._violated(dropped, rows, sides, x[:, 0])
         self.dropped.update(fixed.tolist())
         if negative >= 0:
             negative += len(fixed)  # each would have given one
@@ -285,6 +290,19 @@ class SaddlePointSystem:
         out: Ints = self.communicator.broadcast(fixed)
         length = np.sqrt(whole[out])
         return out, np.where(length > 0.0, length, 1.0)
+
+    def _violated(self, dropped: Ints, data: Floats, sides: Floats, x: Floats) -> Floats:
+        """Distances by which a solution violates constraints that were taken out of a matrix."""
+        place = np.full(self.size, -1, np.int64)
+        place[dropped + self.nf] = np.arange(len(dropped))
+        border = np.flatnonzero((place[self.columns] >= 0) & (self.rows < self.nf))
+        column, row = place[self.columns[border]], self.rows[border]
+        met, square = np.zeros((2, len(dropped)))
+        np.add.at(met, column, data[border] * x[row])
+        np.add.at(square, column, data[border] ** 2)
+        met, square = self.communicator.sum(met), self.communicator.sum(square)
+        out: Floats = (sides - met) / np.sqrt(np.where(square > 0.0, square, 1.0))
+        return self.communicator.broadcast(out)
 
     def _take_out(self, multipliers: Ints, data: Floats, b: Floats, release: Floats) -> None:
         """Remove constraints from a matrix and its right-hand sides, in place."""

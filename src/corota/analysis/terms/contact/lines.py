@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import corota._core as _core
-from corota.analysis.terms.contact.surface import Surface
+from corota.analysis.terms.contact.surface import Surface, carrier
 from corota.arrays import distinct
 from corota.errors import ModelError
 from corota.model import elements
@@ -138,7 +138,9 @@ def line_core(
         )
     except ValueError as error:
         raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
-    return core, slave, None if isinstance(master, RigidCurve) else master, reach, depth
+    body = None if isinstance(master, RigidCurve) else master
+    core.carry(carrier(system, slave), carrier(system, body))
+    return core, slave, body, reach, depth
 
 
 def _half(master: Surface | RigidCurve) -> list[float]:

@@ -40,6 +40,9 @@ LEAST_FRICTION = 1e-9
 EPS = float(np.finfo(float).eps)
 #: Variables of a term, as in the core.
 WIDTH = 20
+#: Edges by which its friction would move a slave node whose stiffness does not count, and the slip
+#: in edges that turns this friction round.
+WEIGHTLESS, TURNS_ROUND = 0.1, 1e-6
 
 
 class Pair:
@@ -123,6 +126,9 @@ class Pair:
         self.seen = False  # whether the surfaces have been near each other
         #: A rigid curve as straight pieces in the reference configuration, made when needed.
         self.chords: Floats | None = None
+        #: Least extent of a body that the other side goes round, computed when needed.
+        self.width_across: float | None = None
+        self.edge = float(self.slave.length.max())
         self.stiffness = np.ones(self.n)  # pressure per gap for the choice of the set
         self.size = system.length
         far = float(np.abs(system.model.mesh.points).max())
@@ -374,11 +380,24 @@ class Pair:
 
     # -- states ------------------------------------------------------------------------
 
-    def _at(self, terms: Terms) -> Constraints:
-        """The constraints as arrays, as the law takes them."""
+    def _at(self, terms: Terms, q: Floats | None = None) -> Constraints:
+        """The constraints as arrays, as the law takes them.
+
+        A slip changes a shear traction `q` by the stiffness of the node. Where this is nothing
+        beside the traction, as of a node that a support draws along, the sign of the slip decides.
+        """
         begin = None if self.start is None or self.law is None else self.gap_of_start()
-        own = self.full, self.area, self.stiffness
+        stiffness = self.stiffness
+        if q is not None and self.friction:
+            by_sign = np.abs(q) / (TURNS_ROUND * self.edge)
+            stiffness = np.where(self.weightless(q), by_sign, stiffness)
+        own = self.full, self.area, stiffness
         return terms.gap, terms.slip, terms.area, *own, begin, self.adhering
+
+    def weightless(self, q: Floats) -> Bools:
+        """Constraints whose slave node has no stiffness that counts beside a shear traction."""
+        weak: Bools = self.stiffness * self.edge * WEIGHTLESS < np.abs(q)
+        return weak
 
     @property
     def adhering(self) -> Bools | None:
@@ -401,7 +420,7 @@ class Pair:
         Closed constraints have no linearized gap after the `last` correction: their pressure alone
         decides.
         """
-        at = self._at(terms)
+        at = self._at(terms, q)
         if self.friction:
             # What begins to touch sticks: rounding alone is no slip.
             rests = (p == 0.0) & (q == 0.0) & (np.abs(terms.slip) <= self.noise * self.full)
@@ -425,11 +444,11 @@ class Pair:
 
     def shear(self, terms: Terms, q: Floats) -> Floats:
         """Trial shear traction, shape (n,)."""
-        return self.conditions.shear(self._at(terms), q)
+        return self.conditions.shear(self._at(terms, q), q)
 
     def violation(self, terms: Terms, p: Floats, q: Floats) -> Floats:
         """Contact residual as a force by constraint, shape (n,)."""
-        return self.conditions.residual(self._at(terms), p, q)
+        return self.conditions.residual(self._at(terms, q), p, q)
 
     def keep_closed(self, states: NDArray[np.int8]) -> None:
         """Take the states of a committed state: slips are measured from where surfaces touched."""

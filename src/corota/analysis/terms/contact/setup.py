@@ -9,12 +9,11 @@ import numpy as np
 
 import corota._core as _core
 from corota.analysis.terms.contact.lines import line_core, line_surface, node_surface
-from corota.analysis.terms.contact.surface import Surface, smoothed
+from corota.analysis.terms.contact.surface import Surface, carrier, smoothed
 from corota.errors import ModelError
 from corota.mesh.kinds import EDGES
-from corota.mesh.parts import part_of_cells, part_of_nodes
+from corota.mesh.parts import part_of_cells
 from corota.model import elements
-from corota.model.constraints import Coupling
 from corota.model.contact import ContactPair, RigidCurve, Tie, joint_thickness
 
 if TYPE_CHECKING:
@@ -32,18 +31,6 @@ REACH = 4.0
 #: Limit of slave edges times boundary edges for the search of the thickness behind a surface, and
 #: relative lengths that count as zero.
 MOST_LOOKED_AT, SAME = 20_000_000, 1e-9
-
-
-def _carrier(system: NumberedModel, slave: Surface) -> int | None:
-    """Reference node of a rigid body that is part of the slave's body and turns with it."""
-    mesh = system.model.mesh
-    part = part_of_nodes(mesh)
-    for item in system.model.constraints:
-        if isinstance(item, Coupling) and item.kind == "kinematic":
-            joined = part[mesh.node_indices(item.nodes)]
-            if (joined == part[slave.node_list[0]]).any():
-                return item.reference
-    return None
 
 
 def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -> Surface:
@@ -225,8 +212,6 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
                 turns=item.master.turns,
                 **common,
             )
-            if (carrier := _carrier(system, slave)) is not None:
-                core.carry(carrier)
         else:
             assert master is not None
             if not system.axisymmetric:
@@ -248,6 +233,7 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
             )
     except ValueError as error:
         raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
+    core.carry(carrier(system, slave), carrier(system, master))
     return core, slave, master, reach, depth
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from corota.analysis.terms.contact.tunneling import AT_ONCE, other_side
 from corota.errors import ModelError
-from corota.mesh.parts import part_of_nodes
+from corota.mesh.parts import nodes_of_cells, part_of_nodes, parts_without
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
@@ -80,7 +80,13 @@ def _check_points(system: NumberedModel, pair: Pair, pieces: Floats, x: Floats) 
     nearest = int(np.argmin(np.where(inside, np.abs(distance), np.inf)))
     if not inside[nearest] or distance[nearest] > size:
         return
-    part = part_of_nodes(system.model.mesh)
+    # Springs end where they will, on either side, and a node with springs alone has no side.
+    mesh, springs = system.model.mesh, np.zeros(system.model.mesh.n_cells, bool)
+    for block in system.blocks:
+        springs[block.cells] = block.section.element.startswith("SPRING")
+    if not np.isin(nodes, nodes_of_cells(mesh, np.flatnonzero(~springs))).any():
+        return
+    part = parts_without(mesh, springs)
     body, _, inside = _signed(pieces, x[np.isin(part, part[nodes])], size)
     # What lies on the curve as a whole tells no side.
     if not inside.any() or body[inside].max() >= -body[inside].min() - size:

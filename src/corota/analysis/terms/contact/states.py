@@ -142,7 +142,9 @@ def let_slip(
                 continue
             p1 = p + found[1][pair.first : pair.first + pair.n, 0]
             q1 = q + found[1][pair.first + pair.n : pair.first + pair.width, 0]
-            left = problem.border.left[pair.first + pair.n : pair.first + pair.width]
+            own = slice(pair.first + pair.n, pair.first + pair.width)
+            left = problem.border.left[own]
+            left = left + np.where(pair.weightless(q), problem.border.left_by_others[own], 0.0)
             bound = pair.bound(np.maximum(p1, p))
             moved = (s == CLOSED) & (np.abs(left) > pair.noise) & np.isfinite(bound)
             q1[moved] = -left[moved]

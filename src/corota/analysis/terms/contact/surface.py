@@ -20,9 +20,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.arrays import distinct
+from corota.mesh.parts import part_of_nodes
+from corota.model.constraints import Coupling
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from corota.analysis.numbered_model import NumberedModel
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -82,6 +86,21 @@ class Surface:
             return self.points
         every = distinct(self.nodes)
         return np.asarray(every[every >= 0])
+
+
+def carrier(system: NumberedModel, side: Surface | None) -> int | None:
+    """Reference node of a rigid body that is part of the body of a surface and turns with it."""
+    if side is None:
+        return None
+    mesh = system.model.mesh
+    part = part_of_nodes(mesh)
+    own = part[side.node_list[0]]
+    for item in system.model.constraints:
+        if isinstance(item, Coupling) and item.kind == "kinematic":
+            joined = part[mesh.node_indices(item.nodes)]
+            if own >= 0 and (joined == own).any():
+                return item.reference
+    return None
 
 
 #: Turns of the boundary at a node that are smoothed: larger ones are corners, smaller ones none.
@@ -168,4 +187,4 @@ def _sides(row: list[int]) -> list[tuple[int, int]]:
     return [(a, b)] if middle < 0 else [(a, middle), (middle, b)]
 
 
-__all__ = ["Surface", "blunt_turns", "sharp_corners", "smoothed"]
+__all__ = ["Surface", "blunt_turns", "carrier", "sharp_corners", "smoothed"]

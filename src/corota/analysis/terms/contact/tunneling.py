@@ -1,8 +1,8 @@
 """Nodes that passed through the opposite surface within one increment.
 
 The core searches no farther than its reach, and a penetration deeper than the body is no contact. A
-node that moved farther may be behind the opposite surface without contact; such an increment is
-refused.
+node that moved farther may be behind the opposite surface without contact, and one that moved
+across a body may be outside again on its other side; such an increment is refused.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -26,13 +26,15 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Fraction of the reach that a node may move without this check.
+#: Fraction of the reach, and of the width of a body, that a node may move without this check.
 UNSEEN = 0.5
 #: Depth over the reach up to which a node touches: a rest of Newton's method, as where a node of
 #: the other side carries both.
 TOUCHES = 1e-8
 #: Rotation of a side in an increment [rad] up to which its ways count as straight.
 TURNS = 0.2
+#: Distance of two ends that are one point, of the size of the side.
+SAME = 1e-6
 #: Nodes times pieces that are compared at once.
 AT_ONCE = 1_000_000
 #: Angle of the chords of arcs [rad].
@@ -66,6 +68,11 @@ def passed(
     first, last, ends = other_side(pair, old, new)
     if not len(first):
         return np.zeros(0, np.int64)
+    if pair.width_across is None:
+        itself = getattr(pair.item, "itself", False)
+        pieces = other_side(pair, pair.reference, pair.reference)[0]
+        pair.width_across = math.inf if itself else _width(pieces)
+    least = min(pair.reach, pair.width_across)
     nodes, state = pair.nodes, None
     through = np.arange(len(nodes))
     unseen = terms.area <= COVERED * pair.full
@@ -83,7 +90,7 @@ def passed(
             mean = drift.mean(axis=0)
             spread = np.hypot(*(drift - mean).T).max()
         moved = np.hypot(*(seen[nodes, :2] - old[nodes, :2] - mean).T) + spread
-        far = (moved > UNSEEN * pair.reach) | (unseen & (moved > pair.depth))
+        far = (moved > UNSEEN * least) | (unseen & (moved > pair.depth))
         through = through[far[through]]
         if not len(through):
             break
@@ -124,6 +131,15 @@ def outside(term: Any, k: int, moves: bool) -> Floats:
             behind &= committed[k] == OPEN
         start[behind] = -pair.depth
     return start
+
+
+def _width(pieces: Floats) -> float:
+    """Least extent of a body that pieces go round; infinite where they end or go round a hole."""
+    (x, y), size = pieces.reshape(-1, 2).T, np.ptp(pieces.reshape(-1, 2), axis=0)
+    starts, stops = (np.round(pieces[:, end] / (SAME * size.max())) for end in (0, 1))
+    closed = np.array_equal(np.unique(starts, axis=0), np.unique(stops, axis=0))
+    twice = float((x[::2] * y[1::2] - x[1::2] * y[::2]).sum())
+    return float(size.min()) if closed and twice > SAME * size.max() ** 2 else math.inf
 
 
 def _side(pieces: Floats, x: Floats) -> Floats:

@@ -1,0 +1,89 @@
+"""Contact in one default increment in which bodies turn far."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import corota as ct
+from tests.audits.test_contact_arcs import belt, polygon_ratio
+from tests.support.blocks import METHODS, block, chain, reaction, scalar, solve
+
+TURN = 2.0 * math.pi
+
+
+@pytest.mark.parametrize("turns", [1.0, -1.0, 2.0, 0.998])
+def test_a_drum_turns_whole_turns_below_a_rope(turns: float) -> None:
+    """Tensions differ by the factor of the polygon; the rope does not pass through the drum."""
+    angle, n, mu, pull = 90.0, 8, 0.25, 1.0
+    points = belt(angle, n)
+    mesh = chain(points)
+    drum = ct.mesh.add_node(mesh, 0.0, 0.0, "drum")
+    model = ct.Model(mesh)
+    model.truss("chain", material=ct.Elastic(E=1e6, nu=0.3), area=1.0)
+    end = points[-1] - points[-2]
+    end /= np.hypot(*end)
+    model.fix([0])
+    model.fix("drum", rotation=turns * TURN)
+    model.force([len(points) - 1], x=pull * end[0], y=pull * end[1])
+    circle = ct.RigidCurve.circle((0, 0), 1.0, reference=drum)
+    model.contact("chain", circle, friction=mu, name="drum")
+    results = solve(model)
+    left = math.hypot(*reaction(results, [0])[:2])
+    assert left == pytest.approx(pull * polygon_ratio(angle, n, mu) ** -np.sign(turns), rel=1e-4)
+    frame = results.frames[-1]
+    slipping = frame.C[:, 4] == 2.0
+    np.testing.assert_allclose(frame.C[slipping, 3], turns * TURN, rtol=1e-3)
+
+
+@pytest.mark.parametrize("turns", [1.0, -2.0])
+@pytest.mark.parametrize("role", ["master", "slave"])
+@pytest.mark.parametrize("method", METHODS)
+def test_a_meshed_drum_turns_whole_turns(method: str, role: str, turns: float) -> None:
+    """Positions show nothing; the rigid core says it. The moment is mu P R, within the tilt of the
+    facets of a master that nodes meet; the work is that along the whole way."""
+    mu, load, radius, n = 0.4, 10.0, 5.0, 120
+    pad = block(0.5, 0.5, 4, 2, (-0.25, radius))
+    mesh = ct.mesh.assembly(pad=pad, drum=ct.mesh.annulus(4.0, radius, 2, n))
+    axle = ct.mesh.add_node(mesh, 0.0, 0.0, "axle")
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e5, nu=0.0))
+    model.fix("pad.left", x=0.0, y=None)
+    model.fix("pad.right", x=0.0, y=None)
+    model.force("pad.top", y=-load)
+    model.rigid("drum.inner", "axle")
+    sides = ("pad.bottom", "drum.outer")
+    model.contact(*(sides if role == "master" else sides[::-1]), friction=mu, method=method)
+    press, rotate = ct.Static(), ct.Static()
+    press.fix("axle", rotation=0.0)
+    rotate.fix("axle", rotation=turns * TURN)
+    results = solve(model, press, rotate)
+    moment = results.frames[-1].RF[axle, 2]
+    facets = method == "node_to_segment"
+    exact = math.copysign(mu * load * radius, turns)
+    assert moment == pytest.approx(exact, rel=math.pi / n / mu + 0.01 if facets else 0.01)
+    work = abs(turns) * TURN * mu * load * radius
+    assert scalar(results, "ALLFD") == pytest.approx(work, rel=0.02)
+
+
+def test_a_rope_over_three_quarters_of_a_drum_does_not_pass_through_it() -> None:
+    """Its ends cross, and its straight parts are long: all of it stays within the search."""
+    angle, n, mu = 270.0, 18, 0.3
+    points = belt(angle, n)
+    mesh = chain(points)
+    drum = ct.mesh.add_node(mesh, 0.0, 0.0, "drum")
+    model = ct.Model(mesh)
+    model.truss("chain", material=ct.Elastic(E=1e6, nu=0.3), area=1.0)
+    end = points[-1] - points[-2]
+    end /= np.hypot(*end)
+    model.fix([0])
+    model.fix("drum", rotation=2.0)
+    model.force([len(points) - 1], x=end[0], y=end[1])
+    circle = ct.RigidCurve.circle((0, 0), 1.0, reference=drum)
+    model.contact("chain", circle, friction=mu, name="drum")
+    results = solve(model)
+    left = math.hypot(*reaction(results, [0])[:2])
+    assert left == pytest.approx(1.0 / polygon_ratio(angle, n, mu), rel=1e-4)
