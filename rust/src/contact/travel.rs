@@ -273,10 +273,9 @@ pub fn ray(slave: &Master<f64>, xi: f64, master: &Master<f64>) -> f64 {
 pub fn followed([slave, master]: [f64; 2], closed: [bool; 2]) -> f64 {
     match closed {
         [false, true] => slave,
-        [true, false] => master,
         [true, true] => slave.min(master).max(0.0) + slave.max(master).min(0.0),
         [false, false] if slave.abs() > master.abs() => slave,
-        [false, false] => master,
+        _ => master,
     }
 }
 
