@@ -634,8 +634,8 @@ class SteadyState(Step):
         t = np.linspace(-1.0, 1.0, self.points)
         if len(own):
             t = np.sign(t) * np.abs(t) ** (1.0 / self.bias)
-        parts = [(a + b) / 2.0 + (b - a) / 2.0 * t for a, b in pairwise(marks)]
-        return distinct(np.concatenate(parts))
+        inner = [(a + b) / 2.0 + (b - a) / 2.0 * t[1:-1] for a, b in pairwise(marks)]
+        return distinct(np.concatenate([marks, *inner]))
 
 
 def listed_steps(steps: object) -> list[Step]:

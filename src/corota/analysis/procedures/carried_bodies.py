@@ -35,7 +35,8 @@ DEFORMS = 0.2
 def carried_bodies(system: System, u: Floats, prescribed: Floats) -> Floats | None:
     """Displacements with bodies turned by their supports; None where none turns far.
 
-    Bodies without a support that says how they turn take the motion of the first that has one.
+    Bodies without a support that says how they turn take the motion of the first that has one, if
+    the supports that they have go along: a lever on a pin does not turn with the drum it brakes.
 
     Parameters
     ----------
@@ -72,6 +73,12 @@ def carried_bodies(system: System, u: Floats, prescribed: Floats) -> Floats | No
     if not any(e and t for e, t in zip(elastic, turns, strict=True)):
         return None
     angle, center, to = whole
+    common = to + _turned(x - center, angle)
+    for mine, motion in zip(members, motions, strict=True):
+        pinned = mine[given[mine, :2].any(axis=1)] if motion is None else mine[:0]
+        off = np.where(given[pinned, :2], common[pinned] - y[pinned], 0.0)
+        if np.abs(off).max(initial=0.0) > DEFORMS * float(np.ptp(x[mine], axis=0).max()):
+            return None  # its supports do not let the body take part
     out: Floats = u.copy()
     for mine, motion in zip(members, motions, strict=True):
         # What has no elements takes part in the common motion, and moves relative to it later.
