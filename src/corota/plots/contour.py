@@ -274,10 +274,10 @@ def frame_title(results: ResultSource, frame: int, scale: float) -> str:
     """Job, step, time and scale of the displacements."""
     state = results.frame(frame)
     shape = "undeformed shape" if scale == 0.0 else f"displacements times {scale:g}"
-    return (
-        f"{results.model.name}: step {state.step}, increment {state.increment}, "
-        f"time {state.time:.6g}, load factor {state.factor:.4g}; {shape}"
-    )
+    when = f"time {state.time:.6g}, load factor {state.factor:.4g}"
+    if state.scalars.get("frequency"):
+        when = f"frequency {state.scalars['frequency']:.6g}"
+    return f"{results.model.name}: step {state.step}, increment {state.increment}, {when}; {shape}"
 
 
 def paint(
