@@ -68,6 +68,13 @@ def test_amplitudes_are_the_same_in_the_file(tmp_path: Path) -> None:
         assert stored.nodal(name, last) == pytest.approx(memory.nodal(name, last), rel=1e-12)
 
 
+def test_stress_at_nodes_is_a_history_over_all_steps() -> None:
+    """A frame of the frequency step has none."""
+    values = response().history("MISESA", "left", combine="max").values
+    assert np.isnan(values[0])
+    assert np.nanmax(values) > 0.0
+
+
 def test_points_crowd_near_the_modes() -> None:
     """The formula of the manuals: mean + half |t|^(1/3) sign(t)."""
     step = ct.SteadyState(lowest=100.0, highest=300.0, points=5)

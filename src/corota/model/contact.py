@@ -354,8 +354,9 @@ class ContactPair(Brief):
             ("reach", self.reach),
             ("adjusted gap", self.adjust),
         ):
-            if not (math.isfinite(value) and value >= 0.0):
-                raise InputError(f"the {what} of a contact pair must be >= 0", self.where)
+            known = isinstance(value, (int, float, np.number)) and math.isfinite(value)
+            if not known or value < 0.0:
+                raise InputError(f"the {what} of a contact pair must be a number >= 0", self.where)
         self.friction_steps = dict(sorted(self.friction_steps.items()))
         if self.friction_steps and min(self.friction_steps) < 1:
             raise InputError("steps of a contact pair are numbers from 1", self.where)

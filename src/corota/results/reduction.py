@@ -189,6 +189,8 @@ def _nodal(
     if name in RESULTANTS and combine in ("auto", "sum"):
         force = getattr(frame, RESULTANTS[name])[:, :2]
         return float(np.hypot(*(force if at is None else force[at]).sum(axis=0)))
+    if name not in NODAL and name not in results.variables(index):
+        return float("nan")  # as of the amplitudes of stress in a step before the harmonic one
     values = nodal_value(frame, name) if name in NODAL else results.nodal(name, index)
     if at is not None:
         values = values[at]
