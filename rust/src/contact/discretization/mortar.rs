@@ -302,8 +302,6 @@ pub struct Mortar {
     /// The same where no support guides an end of the slave: about one that is guided nothing tips,
     /// and a traction along its support would not move the slave, so that it could take any size.
     free: Vec<f64>,
-    /// Edges of rounds: their mean gap is deeper than those of their nodes, also at a guided end.
-    round: Vec<bool>,
     /// Curvature of each master in the reference configuration.
     curvature: Vec<f64>,
 }
@@ -311,8 +309,8 @@ pub struct Mortar {
 impl Discretization for Mortar {
     fn hold(&mut self, sides: &Sides, held: &[bool]) {
         for (i, slope) in self.slope.iter_mut().enumerate() {
-            let guided = sides.slave.constraints[i][..2].iter().any(|&c| held[c]);
-            *slope = if guided && !self.round[i] { 1.0 } else { self.free[i] };
+            let fixed = sides.slave.constraints[i][..2].iter().any(|&c| held[c]);
+            *slope = if fixed { 1.0 } else { self.free[i] };
         }
     }
 
@@ -380,8 +378,7 @@ impl Mortar {
             }
         };
         let slope: Vec<f64> = sides.slave.edges.iter().enumerate().map(slope).collect();
-        let round = round.iter().map(|&r| r || curved).collect();
-        Self { free: slope.clone(), slope, round, curvature }
+        Self { free: slope.clone(), slope, curvature }
     }
 
     /// Height of a master over the chord of a slave edge, whose functions take a gap for linear.

@@ -113,6 +113,7 @@ class Pair:
         self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
         self.held_ends = np.zeros(self.n, bool)  # fixed ends of the slave
+        self.guided_ends = self.held_ends  # those that a support guides
         integrates = isinstance(item, ContactPair) and METHODS[item.method]["integrates"]
         if integrates and not self.slave.pointwise:
             ends = self.place[self.slave.nodes[:, :2]]
@@ -218,7 +219,8 @@ class Pair:
         ends = (left < 0) | (right < 0)
         count = np.round((constrained[self.nodes, :2] ** 2).sum(axis=1))
         self.held_ends = ends & (count == 2)
-        self.core.hold((ends & (count == 1)).tolist())
+        self.guided_ends = ends & (count == 1)
+        self.core.hold(self.guided_ends.tolist())
 
     def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
         """Constraints of slave surfaces on which none is closed at a committed state."""
