@@ -31,7 +31,7 @@ WHOLE = 0.99
 #: Least turn of a body's boundary at a corner [rad], as for constraints of corners.
 LEAST_TURN = np.radians(50.0)
 #: Turns at a vertex between which a surface is a round [rad].
-ROUND, SHARP = 1e-3, 0.6
+ROUND_FROM, ROUND_TO = 1e-3, 0.6
 
 
 def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
@@ -145,7 +145,7 @@ def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
         a, b, c = points[pair.nodes[chain], :2]
         first, second = b - a, c - b
         turn = abs(math.atan2(first[0] * second[1] - first[1] * second[0], float(first @ second)))
-        if ROUND < turn < SHARP:
+        if ROUND_FROM < turn < ROUND_TO:
             depth = math.hypot(*first) * turn / 12.0
             return (
                 f"contact pair {pair.name!r}: the slave surface is round and a support guides "
