@@ -77,7 +77,8 @@ def carried_bodies(system: System, u: Floats, prescribed: Floats) -> Floats | No
     for mine, motion in zip(members, motions, strict=True):
         pinned = mine[given[mine, :2].any(axis=1)] if motion is None else mine[:0]
         off = np.where(given[pinned, :2], common[pinned] - y[pinned], 0.0)
-        if np.abs(off).max(initial=0.0) > DEFORMS * float(np.ptp(x[mine], axis=0).max()):
+        extent = float(np.ptp(x[mine], axis=0).max())
+        if np.abs(off).max(initial=0.0) > DEFORMS * extent + 1e-9 * size:
             return None  # its supports do not let the body take part
     out: Floats = u.copy()
     for mine, motion in zip(members, motions, strict=True):
