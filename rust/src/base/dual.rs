@@ -93,6 +93,7 @@ impl<const D: usize, const STORED: bool> Real for Dual<D, STORED> {
     type Mask = bool;
     const LANES: usize = 1;
     const STIFFNESS: bool = false;
+    const DERIVATIVES: usize = if STORED { D } else { 0 };
 
     fn real(v: f64) -> Self {
         Self { v, d: [0.0; D] }

@@ -38,6 +38,8 @@ pub trait Real:
     /// Whether kernels that give a force and its stiffness give the stiffness too: numbers that
     /// carry their derivatives need none.
     const STIFFNESS: bool = true;
+    /// Derivatives that a number carries and stores behind its value.
+    const DERIVATIVES: usize = 0;
 
     fn real(v: f64) -> Self;
     /// `self * a + b`, fused where the hardware does it.

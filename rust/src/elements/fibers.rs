@@ -57,18 +57,20 @@ const ALONG: [Station; STATIONS] = [
     station(1.0, 0.05, [1.0, 1.0], 1.0),
 ];
 
-/// Stress and modulus of the law of a point in one dimension, and the lanes that failed.
+/// Stress and modulus of the law of a point in one dimension, and the lanes that failed; the stress
+/// acts on the volume `w`.
 #[inline(always)]
 pub fn answer<T: Real>(
     strain: T,
+    w: T,
     point: usize,
     section: &Section<2>,
     history: &mut History<'_>,
 ) -> (T, T, T::Mask) {
     let own = history.per_point;
     let law = own.law::<T, 2>(0, section);
-    let mut state = history.point(point, law.n_state());
-    let answer = law.update([strain, T::zero(), T::zero()], &mut state);
+    let answer = history.answer(point, law, [strain, T::zero(), T::zero()], w);
+    let state = history.point(point, law.n_state());
     let mut modulus = answer.tangent[0][0];
     if law.ideal()
         && let Some(member) = law.plastic_member()
@@ -222,20 +224,21 @@ impl<T: Real> Deformed<T> {
         };
         for (p, station) in ALONG.iter().enumerate() {
             let at = self.at(station, modes, sheared);
+            let weight = self.length.scale(station.weight);
             let [mut normal, mut moment, mut nn, mut nm, mut mm] = [zero; 5];
             for (f, &[y, area, initial]) in section.fibers.iter().enumerate() {
                 let strain = at.curvature.fma(T::real(-y), at.strain - T::real(initial));
-                let (stress, modulus, failed) = answer(strain, p * count + f, section, history);
+                let (stress, modulus, failed) =
+                    answer(strain, weight.scale(area), p * count + f, section, history);
                 normal = stress.fma(T::real(area), normal);
                 moment = stress.fma(T::real(-area * y), moment);
                 nn = modulus.fma(T::real(area), nn);
                 nm = modulus.fma(T::real(-area * y), nm);
                 mm = modulus.fma(T::real(area * y * y), mm);
-                let weight = T::real(area * station.weight / young);
-                sums.energy = (stress * stress).fma(weight, sums.energy);
+                let share = T::real(area * station.weight / young);
+                sums.energy = (stress * stress).fma(share, sums.energy);
                 sums.failed = T::or(sums.failed, failed);
             }
-            let weight = self.length.scale(station.weight);
             let (e, c) = (&at.by_strain, &at.by_curvature);
             for i in 0..ALL {
                 let of = [weight * e[i], weight * c[i]];

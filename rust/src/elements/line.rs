@@ -165,8 +165,9 @@ impl Element<2, 2, 0> for Truss {
         let (t, length) = axis(x);
         let row = stretch::<T, 2>(t);
         let strain = apply(&row, q) / length - history.initial_strain(0, 0);
-        let (stress, modulus, failed) = fibers::answer(strain, 0, section, history);
         let area = section.profile[0];
+        let (stress, modulus, failed) =
+            fibers::answer(strain, length.scale(area), 0, section, history);
         let k = modulus.scale(area) / length;
         add(out, &row, stress.scale(area), &[(k, &row)], tangent);
         out.failed = failed;

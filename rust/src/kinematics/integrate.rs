@@ -4,8 +4,9 @@
 
 use super::about_mean::AboutMean;
 use super::dilatation::{Dilatation, by_modes, times};
+use super::law_tape::LawTape;
 use super::local_strain::{LocalStrain, det};
-use super::modes::{condense, relax};
+use super::modes::{condense, linear_modes, relax};
 use super::per_point::PerPoint;
 use crate::base::Real;
 use crate::base::small::{Blocks, Mat, Nodal, blocks, ldlt, ldlt_solve, nodal};
@@ -83,9 +84,51 @@ pub struct History<'a> {
     pub stride: usize,
     pub clock: Clock,
     pub per_point: PerPoint<'a>,
+    /// Laws linear about the state, for numbers with derivatives.
+    pub tape: Option<&'a mut LawTape>,
 }
 
 impl History<'_> {
+    /// Answer of a law at a point, whose stress acts on the volume `w`.
+    #[inline(always)]
+    pub fn answer<T: Real>(&mut self, p: usize, law: &Law, e: [T; 3], w: T) -> Response<T> {
+        if T::DERIVATIVES > 0
+            && let Some(tape) = self.tape.take()
+        {
+            let state = &mut self.point(p, law.n_state());
+            let update = |e, state: &mut PointState<'_>| {
+                let answer = law.update(e, state);
+                (answer.stress, answer.tangent, answer.failed)
+            };
+            let (stress, tangent, failed) = tape.answer(p, e, w, state, update);
+            self.tape = Some(tape);
+            return Response { stress, tangent, failed };
+        }
+        law.update(e, &mut self.point(p, law.n_state()))
+    }
+    /// The same with a strain through the thickness.
+    #[inline(always)]
+    pub fn solid_answer<T: Real>(
+        &mut self,
+        p: usize,
+        law: &Law,
+        e: [T; 4],
+        w: T,
+    ) -> SolidResponse<T> {
+        if T::DERIVATIVES > 0
+            && let Some(tape) = self.tape.take()
+        {
+            let state = &mut self.point(p, law.n_state());
+            let update = |e, state: &mut PointState<'_>| {
+                let answer = law.update_solid(e, state);
+                (answer.stress, answer.tangent, answer.failed)
+            };
+            let (stress, tangent, failed) = tape.answer(p, e, w, state, update);
+            self.tape = Some(tape);
+            return SolidResponse { stress, tangent, failed };
+        }
+        law.update_solid(e, &mut self.point(p, law.n_state()))
+    }
     /// Initial strain of a point, zero where there is none.
     #[inline(always)]
     pub fn initial_strain<T: Real>(&self, p: usize, row: usize) -> T {
@@ -400,11 +443,9 @@ where
                 around.strain -= history.initial_strain(p, 3);
             }
             let [xx, yy, xy] = strain;
-            let state = &mut history.point(p, members);
-            let solid = law.update_solid([xx, yy, xy, around.strain], state);
-            answer = around.take(&solid);
+            answer = around.take(&history.solid_answer(p, law, [xx, yy, xy, around.strain], w));
         } else {
-            answer = law.update(strain, &mut history.point(p, members));
+            answer = history.answer(p, law, strain, w);
             if !history.initial.is_empty() {
                 let pressure = history.spherical::<T, N>(p, section);
                 answer.stress[0] += pressure;
@@ -700,16 +741,20 @@ pub fn local_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
         out.failed = sums.failed;
         return;
     }
-    let linear = section.law.is_linear() && section.strain.is_linear();
     let mut alpha = [[T::zero(); 2]; A];
     let mut failed = T::none();
-    if !linear {
+    let taped = T::DERIVATIVES > 0 && history.tape.is_some();
+    if taped || !(section.law.is_linear() && section.strain.is_linear()) {
         for m in 0..A {
             for i in 0..2 {
                 alpha[m][i] = T::load(&history.alpha[(2 * m + i) * history.stride..]);
             }
         }
-        failed = relax::<E, T, N, M, A>(x, q, section, history, &mut alpha);
+        failed = if taped {
+            linear_modes::<E, T, N, M, A>(x, q, section, history, &mut alpha)
+        } else {
+            relax::<E, T, N, M, A>(x, q, section, history, &mut alpha)
+        };
     }
     let sums = pass::<E, T, N, M, A>(x, q, &alpha, section, history, Some(&mut *out), tangent);
     // What is left of the internal force is removed by its linear part.

@@ -10,6 +10,7 @@ pub mod hencky;
 pub mod hourglass;
 pub mod inertia;
 pub mod integrate;
+pub mod law_tape;
 pub mod local_strain;
 mod modes;
 pub mod per_point;

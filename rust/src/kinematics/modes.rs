@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::integrate::{History, INTERNAL, Section, pass};
+use super::law_tape::largest_derivative;
 use crate::base::Real;
 use crate::base::small::{Blocks, Mat, Nodal, ldlt, ldlt_forward, ldlt_solve};
 use crate::elements::Element;
@@ -15,6 +16,10 @@ const MAX_LOCAL: usize = 50;
 /// Local step, relative to the largest local dof, below which one linear correction is exact
 /// to round-off (its error is the square of this).
 const LOCAL_STEP: f64 = 1e-8;
+/// Step of the derivatives of the modes, relative to them, that ends their iteration, and where it
+/// does not fall any more.
+const DERIVATIVE_STEP: f64 = 1e-13;
+const DERIVATIVE_ROUNDED: f64 = 1e-6;
 /// Local step, relative to the element, that is zero: the work along smaller ones may underflow.
 const ZERO_STEP: f64 = 1e-100;
 
@@ -144,4 +149,42 @@ where
     }
     let open = T::select(settled, T::zero(), T::one());
     T::real(0.5).lt(open)
+}
+
+/// Derivatives of the internal modes about their solution, where the laws are on a tape: what is left
+/// of them an element removes. One step is exact with an exact tangent; some laws have a symmetric
+/// one that is not quite their derivative. Returns whether they did not settle.
+#[inline(always)]
+pub(super) fn linear_modes<E, T: Real, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<T, N, 2>,
+    q: &Nodal<T, N, M>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+    alpha: &mut Nodal<T, A, 2>,
+) -> T::Mask
+where
+    E: Element<N, M, A>,
+{
+    let mut before = f64::INFINITY;
+    for _ in 0..MAX_LOCAL {
+        let sums = pass::<E, T, N, M, A>(x, q, alpha, section, history, None, false);
+        let mut factor = sums.stiffness;
+        ldlt(&mut factor, 2 * A, &sums.least);
+        let mut step = sums.force;
+        ldlt_solve(&factor, 2 * A, &mut step);
+        let (mut change, mut size) = (0.0f64, 0.0f64);
+        for r in 0..2 * A {
+            let at = &mut alpha[r / 2][r % 2];
+            *at -= step[r];
+            change = change.max(largest_derivative(step[r]));
+            size = size.max(largest_derivative(*at));
+        }
+        let exact = history.tape.as_ref().is_some_and(|tape| tape.exact) && !section.law.ideal();
+        let rounded = change <= DERIVATIVE_ROUNDED * size && change >= before;
+        if exact || change <= DERIVATIVE_STEP * size || rounded {
+            return T::none();
+        }
+        before = change;
+    }
+    T::zero().lt(T::one())
 }

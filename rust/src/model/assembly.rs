@@ -60,6 +60,7 @@ where
                     e,
                     self.stride,
                 ),
+                tape: None,
             };
             let mut answer = Local::zero();
             E::respond(&x, &u, section, &mut history, wanted, &mut answer);

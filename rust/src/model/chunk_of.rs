@@ -156,11 +156,6 @@ where
         PerPoint::of(&self.thickness, &self.sides, self.laws.as_ref(), e, self.stride)
     }
 
-    /// Committed internal modes.
-    pub(super) fn alpha_old(&self) -> &[f64] {
-        &self.alpha_old
-    }
-
     /// Laws at the temperatures that are stored.
     fn temper(&mut self) -> Result<(), String> {
         let shared = self.shared.clone();

@@ -213,6 +213,7 @@ where
                     e,
                     stride,
                 ),
+                tape: None,
             };
             let step = Step {
                 u0: &u0,

@@ -187,6 +187,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             stride: 1,
             clock: context.clock,
             per_point: own,
+            tape: None,
         };
         let wanted = Wanted { nlgeom: context.nlgeom, stressed: false, tangent: false };
         let mut answer = Local::zero();

@@ -1,9 +1,11 @@
 //! Exact derivatives of the forces and of the new state of elements, contracted with weights.
 //!
-//! The kernels run in numbers that carry derivatives, history, thickness and initial strain
-//! included: no element, strain or law has a derivative written for it. Each element gives the
-//! gradient of one number, the sum of its forces and of its new state by their weights: what the
-//! adjoint of an increment needs (Michaleris, Tortorelli & Vidal 1994).
+//! The kernels run in numbers that carry derivatives, thickness and initial strain included: no
+//! element, strain or law has a derivative written for it. Each element gives the gradient of one
+//! number, the sum of its forces and of its new state by their weights: what the adjoint of an
+//! increment needs (Michaleris, Tortorelli & Vidal 1994). Laws are differentiated once at each point;
+//! by displacements and history one way backwards through them gives all (see
+//! [`crate::kinematics::law_tape`]).
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::build::Block;
@@ -15,14 +17,11 @@ use crate::base::{Dual, Real};
 use crate::elements::Element;
 use crate::elements::element;
 use crate::kinematics::integrate::{History, Local};
+use crate::kinematics::law_tape::{LawTape, Number, WIDTH, Way};
 use crate::kinematics::per_point::PerPoint;
 
-/// Derivatives that one evaluation of an element carries.
-const WIDTH: usize = 2;
-/// Places of a number in a history.
-const STRIDE: usize = 1 + WIDTH;
-
-type Number = Dual<WIDTH, true>;
+/// A number with its derivative along the weights of the forces.
+type Along = Dual<1, true>;
 
 /// Weights of what is differentiated, and which derivatives are wanted.
 #[derive(Clone, Copy)]
@@ -150,33 +149,55 @@ enum Input {
 }
 
 /// Numbers with their derivatives, one after the other.
-struct Stored(Vec<f64>);
+struct Stored {
+    places: Vec<f64>,
+    stride: usize,
+}
 
 impl Stored {
-    fn new(n: usize) -> Self {
-        Self(vec![0.0; n * STRIDE])
+    fn new<T: Real>(n: usize) -> Self {
+        let stride = 1 + T::DERIVATIVES;
+        Self { places: vec![0.0; n * stride], stride }
     }
     /// Take values without derivatives.
     fn set(&mut self, value: impl Fn(usize) -> f64) {
-        for (k, number) in self.0.chunks_exact_mut(STRIDE).enumerate() {
+        for (k, number) in self.places.chunks_exact_mut(self.stride).enumerate() {
             number.fill(0.0);
             number[0] = value(k);
         }
     }
     fn seed(&mut self, k: usize, variable: usize) {
-        self.0[k * STRIDE + 1 + variable] = 1.0;
+        self.places[k * self.stride + 1 + variable] = 1.0;
     }
+    fn value(&self, k: usize) -> f64 {
+        self.places[k * self.stride]
+    }
+}
+
+/// What an element of its own numbers is evaluated from.
+struct Inputs {
+    old: Stored,
+    new: Stored,
+    alpha: Stored,
+    thickness: Stored,
+    sides: Stored,
+    initial: Stored,
 }
 
 impl<E, const N: usize, const M: usize, const A: usize> ChunkOf<E, N, M, A>
 where
     E: Element<N, M, A>,
 {
+    /// Whether the laws of the points say all of the history of an element: what an element of a
+    /// plane remembers itself follows the tangents.
+    const TAPED: bool = E::MEMORY == 0 || E::LINE;
+
     /// Members of the state of an element.
     pub(super) fn n_state(&self) -> usize {
         self.old.len() / self.stride.max(1)
     }
 
+    /// Inputs whose derivatives go forwards.
     fn inputs(&self, wanted: Wanted) -> Vec<Input> {
         let n_points = self.shared.section.points.len();
         let mut all = Vec::new();
@@ -186,77 +207,150 @@ where
             }
         };
         add(wanted.positions, 2 * N, Input::Position);
-        add(wanted.displacements, M * N, Input::Displacement);
-        add(wanted.state, self.n_state(), Input::State);
+        add(wanted.displacements && !Self::TAPED, M * N, Input::Displacement);
+        add(wanted.state && !Self::TAPED, self.n_state(), Input::State);
         add(wanted.thickness, n_points, Input::Thickness);
         add(wanted.initial, 4 * n_points, Input::Initial);
         all
     }
 
+    fn numbers<T: Real>(&self, strained: bool) -> Inputs {
+        let (n_points, n_state) = (self.shared.section.points.len(), self.n_state());
+        Inputs {
+            old: Stored::new::<T>(n_state),
+            new: Stored::new::<T>(n_state),
+            alpha: Stored::new::<T>(2 * A),
+            thickness: Stored::new::<T>(n_points),
+            sides: Stored::new::<T>(if self.sides.is_empty() { 0 } else { N }),
+            initial: Stored::new::<T>(if strained { 4 * n_points } else { 0 }),
+        }
+    }
+
+    /// Values of an element, about the modes and the own memory of a `settled` evaluation if there
+    /// is one.
+    fn set(&self, inputs: &mut Inputs, e: usize, settled: Option<&Inputs>) {
+        let at = |values: &[f64], k: usize| values[k * self.stride + e];
+        let memory =
+            if E::LINE { self.n_state() - E::MEMORY.min(self.n_state()) } else { usize::MAX };
+        inputs.old.set(|k| match settled {
+            Some(settled) if k >= memory => settled.new.value(k),
+            _ => at(&self.old, k),
+        });
+        inputs.new.set(|_| 0.0);
+        inputs.alpha.set(|k| settled.map_or_else(|| at(&self.alpha, k), |s| s.alpha.value(k)));
+        inputs.sides.set(|k| at(&self.sides, k));
+        let uniform = self.shared.section.thickness;
+        inputs
+            .thickness
+            .set(|p| if self.thickness.is_empty() { uniform } else { at(&self.thickness, p) });
+        inputs.initial.set(|k| if self.initial.is_empty() { 0.0 } else { at(&self.initial, k) });
+    }
+
+    /// Answer of an element.
+    fn respond<T: Real>(
+        &self,
+        e: usize,
+        context: &Context<'_>,
+        (x, u): (&Nodal<T, N, 2>, &Nodal<T, N, M>),
+        inputs: &mut Inputs,
+        tape: Option<&mut LawTape>,
+    ) -> Local<T, N, M> {
+        let forces = element::Wanted { nlgeom: context.nlgeom, stressed: false, tangent: false };
+        let mut history = History {
+            old: &inputs.old.places,
+            new: &mut inputs.new.places,
+            alpha: &mut inputs.alpha.places,
+            initial: &inputs.initial.places,
+            stride: 1 + T::DERIVATIVES,
+            clock: context.clock,
+            per_point: PerPoint {
+                thickness: &inputs.thickness.places,
+                sides: &inputs.sides.places,
+                stride: 1 + T::DERIVATIVES,
+                laws: self.laws.as_ref().map(|laws| laws.of(e)),
+            },
+            tape,
+        };
+        let mut answer = Local::zero();
+        let section = self.shared.section(context.nlgeom);
+        E::respond(x, u, section, &mut history, forces, &mut answer);
+        answer
+    }
+
     /// Gradients of all elements of the chunk.
     pub(super) fn differentiate(&self, context: &Context<'_>, weights: &Weights<'_>) -> Gradients {
-        let section = self.shared.section(context.nlgeom);
+        let section = &self.shared.section;
         let (n_points, n_state) = (section.points.len(), self.n_state());
-        let inputs = self.inputs(weights.wanted);
+        let wanted = weights.wanted;
+        let forward = self.inputs(wanted);
+        let backward = Self::TAPED && (wanted.displacements || wanted.state);
         let n = self.nodes.len();
         let mut out = Gradients::default();
         let state = weights.state.get(self.shared.block).map_or(&[][..], Vec::as_slice);
         let sized = |some: bool, count: usize| vec![0.0; if some { count } else { 0 }];
-        out.positions = sized(weights.wanted.positions, 2 * N * n);
-        out.displacements = sized(weights.wanted.displacements, M * N * n);
-        out.state = sized(weights.wanted.state, n_state * n);
-        out.thickness = sized(weights.wanted.thickness, n_points * n);
-        out.initial = sized(weights.wanted.initial, 4 * n_points * n);
-        let (mut old, mut new) = (Stored::new(n_state), Stored::new(n_state));
-        let mut alpha = Stored::new(2 * A);
-        let mut thickness = Stored::new(n_points);
-        let mut sides = Stored::new(if self.sides.is_empty() { 0 } else { N });
-        let strained = weights.wanted.initial || !self.initial.is_empty();
-        let mut initial = Stored::new(if strained { 4 * n_points } else { 0 });
-        let forces = element::Wanted { nlgeom: context.nlgeom, stressed: false, tangent: false };
+        out.positions = sized(wanted.positions, 2 * N * n);
+        out.displacements = sized(wanted.displacements, M * N * n);
+        out.state = sized(wanted.state, n_state * n);
+        out.thickness = sized(wanted.thickness, n_points * n);
+        out.initial = sized(wanted.initial, 4 * n_points * n);
+        let strained = !self.initial.is_empty();
+        let mut settled = self.numbers::<f64>(strained);
+        let mut along = self.numbers::<Along>(strained);
+        let mut inputs = self.numbers::<Number>(strained || wanted.initial);
+        let mut tape = LawTape::new(section.n_histories(), section.law.n_state(), n_state);
         for e in 0..n {
             let (x0, u0) = self.gather::<f64>(e, context);
-            for group in inputs.chunks(WIDTH) {
+            let mut failed = false;
+            let own = state.get(self.elements[e] as usize * n_state..).unwrap_or(&[]);
+            let own = &own[..n_state.min(own.len())];
+            if Self::TAPED {
+                self.set(&mut settled, e, None);
+                failed |= self.respond::<f64>(e, context, (&x0, &u0), &mut settled, None).failed;
+                tape.clear();
+            }
+            if backward {
+                tape.way = Way::Backwards;
+                tape.weights.clear();
+                tape.weights.extend_from_slice(own);
+                let x = x0.map(|p| p.map(Along::real));
+                let mut u = u0.map(|p| p.map(Along::real));
+                for (a, &node) in self.nodes[e].iter().enumerate() {
+                    let start = context.dofs.start[node as usize] as usize;
+                    for i in 0..M {
+                        u[a][i].d[0] = weights.force[start + i];
+                    }
+                }
+                self.set(&mut along, e, Some(&settled));
+                let answer = self.respond(e, context, (&x, &u), &mut along, Some(&mut tape));
+                failed |= answer.failed;
+                if wanted.displacements {
+                    let to = &mut out.displacements[M * N * e..][..M * N];
+                    for (to, force) in to.iter_mut().zip(answer.force.as_flattened()) {
+                        *to = force.d[0];
+                    }
+                }
+                if wanted.state {
+                    out.state[n_state * e..][..n_state].copy_from_slice(&tape.gradient);
+                }
+                tape.way = Way::Forwards;
+            }
+            for group in forward.chunks(WIDTH) {
                 let mut x = x0.map(|p| p.map(Number::real));
                 let mut u = u0.map(|p| p.map(Number::real));
-                old.set(|k| self.old[k * self.stride + e]);
-                new.set(|_| 0.0);
-                alpha.set(|k| self.alpha_old()[k * self.stride + e]);
-                sides.set(|k| self.sides[k * self.stride + e]);
-                thickness.set(|p| {
-                    let own = self.thickness.get(p * self.stride + e);
-                    own.copied().unwrap_or(section.thickness)
-                });
-                initial.set(|k| self.initial.get(k * self.stride + e).copied().unwrap_or(0.0));
+                self.set(&mut inputs, e, Self::TAPED.then_some(&settled));
                 for (variable, &input) in group.iter().enumerate() {
                     match input {
                         Input::Position(k) => x[k / 2][k % 2].d[variable] = 1.0,
                         Input::Displacement(k) => u[k / M][k % M].d[variable] = 1.0,
-                        Input::State(k) => old.seed(k, variable),
-                        Input::Thickness(p) => thickness.seed(p, variable),
-                        Input::Initial(k) => initial.seed(k, variable),
+                        Input::State(k) => inputs.old.seed(k, variable),
+                        Input::Thickness(p) => inputs.thickness.seed(p, variable),
+                        Input::Initial(k) => inputs.initial.seed(k, variable),
                     }
                 }
-                let mut history = History {
-                    old: &old.0,
-                    new: &mut new.0,
-                    alpha: &mut alpha.0,
-                    initial: &initial.0,
-                    stride: STRIDE,
-                    clock: context.clock,
-                    per_point: PerPoint {
-                        thickness: &thickness.0,
-                        sides: &sides.0,
-                        stride: STRIDE,
-                        laws: self.laws.as_ref().map(|laws| laws.of(e)),
-                    },
-                };
-                let mut answer = Local::zero();
-                E::respond::<Number>(&x, &u, section, &mut history, forces, &mut answer);
-                if answer.failed && out.failed.last() != Some(&(self.elements[e] as usize)) {
-                    out.failed.push(self.elements[e] as usize);
-                }
-                let sum = self.weighted(e, context, weights, state, &answer.force, &new.0);
+                let taped = Self::TAPED.then_some(&mut tape);
+                let answer = self.respond(e, context, (&x, &u), &mut inputs, taped);
+                failed |= answer.failed;
+                let sum = self.weighted(e, context, weights, own, &answer.force, &inputs.new);
                 for (&input, &d) in group.iter().zip(&sum) {
                     match input {
                         Input::Position(k) => out.positions[2 * N * e + k] = d,
@@ -266,6 +360,9 @@ where
                         Input::Initial(k) => out.initial[4 * n_points * e + k] = d,
                     }
                 }
+            }
+            if failed {
+                out.failed.push(self.elements[e] as usize);
             }
         }
         out
@@ -279,7 +376,7 @@ where
         weights: &Weights<'_>,
         state: &[f64],
         force: &Nodal<Number, N, M>,
-        new: &[f64],
+        new: &Stored,
     ) -> [f64; WIDTH] {
         let mut sum = [0.0; WIDTH];
         for (a, &node) in self.nodes[e].iter().enumerate() {
@@ -290,13 +387,9 @@ where
                 }
             }
         }
-        if !state.is_empty() {
-            let n_state = self.n_state();
-            let own = &state[self.elements[e] as usize * n_state..][..n_state];
-            for (weight, number) in own.iter().zip(new.chunks_exact(STRIDE)) {
-                for (s, d) in sum.iter_mut().zip(&number[1..]) {
-                    *s += weight * d;
-                }
+        for (weight, number) in state.iter().zip(new.places.chunks_exact(new.stride)) {
+            for (s, d) in sum.iter_mut().zip(&number[1..]) {
+                *s += weight * d;
             }
         }
         sum

@@ -154,7 +154,6 @@ def adjoints(
             values[column] = leaf.value(point)
     if not wanted:
         return values, []
-    trajectory.forget_modes()
     y: list[list[Floats]] = [[] for _ in leaves]
     final = max(at_frame)
     step = increments[-1].step

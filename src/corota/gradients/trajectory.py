@@ -39,10 +39,6 @@ if TYPE_CHECKING:
 EQUILIBRIUM = 1e-5
 
 
-#: Parts of the state of a chunk of elements, and which of them are the internal modes.
-PARTS, MODES = 5, 1
-
-
 @dataclass
 class Increment:
     """A converged increment.
@@ -297,19 +293,6 @@ class Trajectory:
         """Let slips of the next increment begin at a displacement."""
         assert increment.surfaces is not None
         slide(self.system, u, increment.surfaces)
-
-    def forget_modes(self) -> None:
-        """Let the iterations for internal modes of elements begin at zero.
-
-        From the solution they would end at once. Where the tangent of a law is not quite its
-        derivative, the derivatives of the modes need as many iterations as the modes.
-        """
-        core = self.system.core
-        values, lengths = core.state()
-        ends = np.cumsum(lengths.astype(np.int64))
-        for part in range(MODES, len(ends), PARTS):
-            values[ends[part - 1] : ends[part]] = 0.0
-        core.restore_state(values, lengths)
 
     def at_step(self, increments: Sequence[Increment], step: int) -> Trajectory:
         """Equations of the same model with the loads of one of the steps."""
