@@ -1,7 +1,7 @@
 """Compiled core of Corota: types of what `rust/src/python` offers."""
 
 # SPDX-License-Identifier: BSD-3-Clause
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,16 @@ _Floats = NDArray[np.float64]
 _Indices = NDArray[np.uint32]
 
 _Integers = NDArray[np.int64]
+
+class _Gaps(TypedDict):
+    total_gap: _Floats
+    total_slip: _Floats
+    total_area: _Floats
+    constraint: _Integers
+    pair: _Integers
+    variables: _Integers
+    gap_gradient: _Floats
+    slip_gradient: _Floats
 
 class Contact:
     threads: int
@@ -72,7 +82,7 @@ class Contact:
     def pattern(self) -> tuple[_Integers, _Integers]: ...
     def evaluate(
         self, x: _Floats, old: _Floats | None = ..., closed: NDArray[np.bool_] | None = ...
-    ) -> dict[str, NDArray[Any]]: ...
+    ) -> _Gaps: ...
     def hessian(self, p: _Floats, q: _Floats) -> tuple[_Integers, _Integers, _Floats]: ...
     def hold(self, held: list[bool]) -> None: ...
     def carry(self, slave: int | None, master: int | None) -> None: ...

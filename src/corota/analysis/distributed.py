@@ -13,7 +13,7 @@ Source: CalculiX 2.20, ``loadadd.f`` and ``bodyadd.f``; tests/steps compares wit
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -327,8 +327,7 @@ class DistributedLoads:
 
     def _check_contact(self, fluid: PenetratingPressure, item: EdgeLoad) -> None:
         """Refuse a fluid whose edges are no slave surface: their contact pressure is not known."""
-        system: Any = self.system  # the equations
-        slaves, masters = (system.nodes_of_terms(role) for role in ("slave", "master"))
+        slaves, masters = (self.system.nodes_of_terms(role) for role in ("slave", "master"))
         if (fluid.on_chain & masters & ~slaves).any():
             raise ModelError(
                 "the edges of a fluid that penetrates are a master surface of contact: give those "
@@ -431,6 +430,8 @@ def _goes_on(old: DistributedLoad, new: DistributedLoad) -> bool:
     pair = [load.item for load in (old, new) if isinstance(load.item, EdgeLoad)]
     if len(pair) < 2 or {item.kind for item in pair} != {"penetrating pressure"}:
         return False
+    from corota.analysis.penetration import PenetratingPressure
+
     assert old.faces is not None
     assert new.faces is not None
     both = np.isin(_codes(old.faces), _codes(new.faces))
@@ -441,11 +442,10 @@ def _goes_on(old: DistributedLoad, new: DistributedLoad) -> bool:
             "a fluid that penetrates gets another pressure on the same edges as before",
             new.item.where,
         )
-    before: Any = old.force
-    fluid: Any = new.force
+    assert isinstance(old.force, PenetratingPressure)
+    assert isinstance(new.force, PenetratingPressure)
     new.begin = old.begin
-    for name in ("wet", "committed", "pressure"):
-        setattr(fluid, name, getattr(before, name))
+    new.force.take_over(old.force)
     return True
 
 

@@ -10,7 +10,7 @@ displacement is computed once.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from corota.mesh import selection
 from corota.model import elements
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     import corota._core as _core
@@ -28,6 +30,10 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     Triplets = tuple[Ints, Ints, Floats]
+    #: Size of a load on edges: a pressure, or the components of a traction.
+    Scale = TypeVar("Scale", float, tuple[float, float])
+    #: Force by node, and rows, columns and values of its derivative.
+    CoreForce = tuple[Floats, NDArray[np.uint32], NDArray[np.uint32], Floats]
 
 #: Empty tangent and empty start: two arrays, because the core borrows both at once.
 EMPTY, END_POINT = np.zeros(0), np.zeros(0)
@@ -373,7 +379,10 @@ def _points_of_edge(depth: Floats) -> tuple[Floats, Floats]:
 
 
 def evaluate(
-    system: NumberedModel, load: Any, u: Floats | None, value: float | tuple[float, float]
+    system: NumberedModel,
+    load: Callable[[Floats, int, Scale], CoreForce],
+    u: Floats | None,
+    value: Scale,
 ) -> tuple[Floats, Triplets]:
     """Force of loaded edges along the nodes' axes, and its derivative in global axes.
 

@@ -15,7 +15,7 @@ import numpy as np
 from corota.analysis.evaluation import Evaluation
 from corota.analysis.linear.unsymmetric import FullMatrix
 from corota.analysis.newton import ResidualNorms
-from corota.analysis.numbered_model import NumberedModel
+from corota.analysis.numbered_model import NumberedModel, Role
 from corota.analysis.recovery import recover
 from corota.analysis.rule import REST, Rule
 from corota.analysis.scales import Scales
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.linear.types import Sparse
-    from corota.analysis.terms.term import Role, Term
+    from corota.analysis.terms.term import Term
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.results import PointFields

@@ -6,7 +6,7 @@ The basis of the terms of the equation, without loads, supports and contact.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 
+#: Surfaces of ties; slaves and masters of contact.
+Role = Literal["tied", "slave", "master"]
 #: Names of the dofs in messages.
 DOF_NAMES = ("x", "y", "rotation")
 
@@ -207,6 +209,15 @@ class NumberedModel:
         return self.at_nodes(self.communicator.sum(forces[0] - forces[1]))
 
     @property
+    def constrained(self) -> NDArray[np.bool_]:
+        """Dofs that supports prescribe, shape (n_dofs,): none without terms."""
+        return np.zeros(self.n_dofs, bool)
+
+    def nodes_of_terms(self, role: Role) -> NDArray[np.bool_]:
+        """Nodes of the surfaces that terms join, shape (n_nodes,): none without terms."""
+        return np.zeros(len(self.per_node), bool)
+
+    @property
     def counted(self) -> NDArray[np.bool_]:
         """Dofs that measure the length of a path: displacements, not rotations."""
         counted: NDArray[np.bool_] = ~self.is_rotation
@@ -228,4 +239,4 @@ def _extent(points: Floats) -> Floats:
     return extent
 
 
-__all__ = ["DOF_NAMES", "NumberedModel"]
+__all__ = ["DOF_NAMES", "NumberedModel", "Role"]

@@ -107,6 +107,10 @@ class PenetratingPressure:
         #: Edges of the other body where it is.
         self.beside = np.zeros(0 if opposite is None else len(opposite.nodes), bool)
 
+    def take_over(self, before: PenetratingPressure) -> None:
+        """Start where another fluid on the same edges is, under the pressure that it has."""
+        self.wet, self.committed, self.pressure = before.wet, before.committed, before.pressure
+
     def set_mass(self, kind: str) -> None:
         """See :class:`corota.analysis.distributed_forces.Distribution`."""
 

@@ -79,7 +79,7 @@ class LinearizedConstraints:
     constraints: Constraints
     u: Floats
     g: Any
-    direct: Any
+    direct: Sparse
     curvature: float = 1.0
 
     #: Whether any dof depends on others or has local axes.

@@ -7,7 +7,7 @@ be passed to the procedures; those of `SOLVERS` can also be requested by name.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
+    from scipy.sparse.linalg import SuperLU as Factors
 
     from corota.analysis.linear.types import Index
 
@@ -78,10 +79,6 @@ class LinearSolver(Protocol):
         ...
 
 
-def _index(values: Index | None, kind: type[np.generic]) -> Index | None:
-    return None if values is None else np.ascontiguousarray(values, dtype=kind)
-
-
 class Multifrontal:
     """The built-in solver: LDLᵀ with inertia, or LU if not symmetric.
 
@@ -92,13 +89,12 @@ class Multifrontal:
     """
 
     def __init__(self, symmetric: bool = True) -> None:
-        self._core: Any = _core.Ldlt() if symmetric else _core.Lu()
+        self._core: _core.Ldlt | _core.Lu = _core.Ldlt() if symmetric else _core.Lu()
 
     @property
     def threads(self) -> int:
         """Threads to use, 0 for all the machine has; results do not depend on it."""
-        threads: int = self._core.threads
-        return threads
+        return self._core.threads
 
     @threads.setter
     def threads(self, count: int) -> None:
@@ -121,19 +117,15 @@ class Multifrontal:
         after: Index | None = None,
     ) -> None:
         """Order and prepare for a pattern (see `LinearSolver`)."""
-        pattern = (
-            _index(indptr, np.uintp),
-            _index(indices, np.uint32),
-            _index(node_of_dof, np.uint32),
-            _index(after, np.uint32),
-        )
+        starts = np.ascontiguousarray(indptr, np.uintp)
+        rows, nodes = (np.ascontiguousarray(i, np.uint32) for i in (indices, node_of_dof))
+        last = None if after is None else np.ascontiguousarray(after, np.uint32)
         with unforked:
-            self._core.analyze(*pattern)
+            self._core.analyze(starts, rows, nodes, last)
 
     def factorize(self, data: Floats) -> Inertia | None:
         """Factorize values of shape (nnz,); returns the inertia if symmetric."""
-        inertia: Inertia | None = self._core.factorize(np.ascontiguousarray(data, dtype=float))
-        return inertia
+        return self._core.factorize(np.ascontiguousarray(data, dtype=float))
 
     def solve(self, rhs: Floats) -> Floats:
         """Solution for right-hand sides of shape (n,) or (n, k)."""
@@ -155,7 +147,7 @@ class SuperLU:
         self._symmetric = symmetric
         self._indptr = np.zeros(1, dtype=np.int32)
         self._indices = np.zeros(0, dtype=np.int32)
-        self._lu: Any = None
+        self._lu: Factors | None = None
 
     def analyze(
         self,
@@ -185,6 +177,7 @@ class SuperLU:
 
     def solve(self, rhs: Floats) -> Floats:
         """Solution for right-hand sides of shape (n,) or (n, k)."""
+        assert self._lu is not None
         x: Floats = self._lu.solve(np.asarray(rhs, dtype=float))
         if not np.all(np.isfinite(x)):
             raise SingularError("matrix is singular: the solution is not finite")

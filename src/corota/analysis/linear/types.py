@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     #: Kind of numbers of an array that is taken apart only.
     Kind = TypeVar("Kind", bound=np.generic)
-    #: Any object that processes send to one another.
+    #: What processes send to one another.
     Item = TypeVar("Item")
     #: Integers of any width.
     Index = NDArray[np.integer[Any]]

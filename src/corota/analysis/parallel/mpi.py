@@ -8,7 +8,7 @@ import sys
 import time
 from functools import lru_cache
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -166,7 +166,7 @@ def _join(group: list[PointFields]) -> PointFields:
     cells = np.concatenate([g.cells for g in group])
     order = np.argsort(cells, kind="stable")
 
-    def put(each: list[Any]) -> Any:
+    def put(each: list[NDArray[Kind]]) -> NDArray[Kind]:
         return np.concatenate(each)[order]
 
     one = group[0]
@@ -179,8 +179,8 @@ def _join(group: list[PointFields]) -> PointFields:
         put([g.frame_rotation for g in group]),
         put([g.volume for g in group]),
         {name: put([g.values[name] for g in group]) for name in names},
-        put([g.forces for g in group]),
-        None if one.fibers is None else put([g.fibers for g in group]),
+        None if one.forces is None else put([g.forces for g in group if g.forces is not None]),
+        None if one.fibers is None else put([g.fibers for g in group if g.fibers is not None]),
     )
 
 

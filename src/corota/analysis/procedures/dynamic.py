@@ -30,7 +30,7 @@ from corota.analysis.terms.contact.newton import solve_increment
 from corota.analysis.terms.contact.relaxation import relax
 from corota.analysis.terms.damping import Damping
 from corota.analysis.terms.inertia import Inertia, MotionState
-from corota.analysis.terms.moving_mass import massless_nodes
+from corota.analysis.terms.redistribution import massless_nodes
 from corota.analysis.terms.viscous import ViscousElements
 from corota.errors import SingularError
 from corota.model import elements

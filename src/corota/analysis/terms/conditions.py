@@ -19,9 +19,8 @@ import numpy as np
 from corota.analysis.distributed import DistributedLoads
 from corota.analysis.distributed_forces import EMPTY, END_POINT, LoadSum
 from corota.analysis.terms.load_factors import LoadFactors
-from corota.analysis.terms.moving_mass import massless_nodes
 from corota.analysis.terms.nodal_forces import NodalForces
-from corota.analysis.terms.redistribution import set_moving_mass
+from corota.analysis.terms.redistribution import massless_nodes, set_moving_mass
 from corota.analysis.terms.supports import Supports
 from corota.analysis.terms.temperatures import Temperatures
 from corota.analysis.terms.term import Term

@@ -80,7 +80,7 @@ class Linearized:
         self.system = system
         self.u = u.copy()
         self._load = load
-        self._pressures: Any = None
+        self._pressures: Sparse | None = None
         self._hard: Sparse | None = None
         self._normal: SuperLU | None = None
         loads = system.conditions.as_reached() if time is None else nullcontext()
@@ -194,7 +194,7 @@ class Linearized:
 
     def pressed(self, z: Any) -> Any:
         """Changes of all unknowns with the pressures of contact laws that follow from the dofs."""
-        if not len(self._laws):
+        if self._pressures is None or not len(self._laws):
             return z
         out = z.copy()
         out[self.nf + self._laws] = self._pressures @ z[: self.nf]
@@ -320,7 +320,7 @@ class LinearMotion(Linearized):
             self._damping[key] = (matrix + self.coriolis()).tocsc() if self.turns else matrix
         return self._damping[key]
 
-    def coriolis(self) -> Any:
+    def coriolis(self) -> Sparse:
         """Coriolis matrix, skew, of a model that rotates with the speed of its centrifugal load.
 
         Exact for displacements; drilling rotations and beams take the mean of the masses along
@@ -346,7 +346,8 @@ class LinearMotion(Linearized):
         ).tocsr()
         mass = system.pattern.full(self.mass_values)
         whole = (rate * (mass @ turn + turn @ mass)).tocoo()
-        return self.padded(self.reduce(None, (whole.row, whole.col, whole.data)))
+        found: Sparse = self.padded(self.reduce(None, (whole.row, whole.col, whole.data)))
+        return found
 
 
 def spin(system: System) -> float:

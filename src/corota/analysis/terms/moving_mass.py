@@ -1,24 +1,20 @@
 """The mass for gravity and spin in a static step.
 
 A static state is an equilibrium of the dynamic step that follows only if its weight is that of the
-mass
-in motion: lumped and redistributed masses load other nodes than the
-consistent mass does, with the same sum.
+mass in motion: lumped and redistributed masses load other nodes than the consistent mass does, with
+the same sum.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from corota.model.steps import Dynamic, Frequency
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    import numpy as np
-    from numpy.typing import NDArray
 
     from corota.model.steps import Step
 
@@ -61,16 +57,4 @@ def masses_of_steps(steps: Sequence[Step]) -> list[MovingMass]:
     return found[::-1]
 
 
-def massless_nodes(system: Any, redistribute: bool) -> NDArray[np.bool_] | None:
-    """Nodes whose mass others carry: the slave nodes of contact.
-
-    A contact force that acts on nodes without mass is bounded and does no work in the limit of
-    small increments; on nodes with mass it creates energy and chatters.
-    """
-    if not redistribute:
-        return None
-    massless: NDArray[np.bool_] = system.nodes_of_terms("slave")
-    return massless if massless.any() else None
-
-
-__all__ = ["MovingMass", "masses_of_steps", "massless_nodes"]
+__all__ = ["MovingMass", "masses_of_steps"]

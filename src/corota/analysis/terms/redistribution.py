@@ -31,6 +31,18 @@ HOLDS = 1e-9
 SMALL = 0.01
 
 
+def massless_nodes(system: NumberedModel, redistribute: bool) -> NDArray[np.bool_] | None:
+    """Nodes whose mass others carry: the slave nodes of contact.
+
+    A contact force that acts on nodes without mass is bounded and does no work in the limit of
+    small increments; on nodes with mass it creates energy and chatters.
+    """
+    if not redistribute:
+        return None
+    massless = system.nodes_of_terms("slave")
+    return massless if massless.any() else None
+
+
 def set_moving_mass(system: NumberedModel, kind: str, massless: NDArray[np.bool_] | None) -> str:
     """Set the massless nodes in the core, and the densities of the others.
 
@@ -153,4 +165,4 @@ def _kept(before: Floats, after: Floats) -> tuple[Floats, tuple[float, float]]:
     return factors, (float(np.hypot(*left[1:3])), float(abs(left[3])))
 
 
-__all__ = ["set_moving_mass"]
+__all__ = ["massless_nodes", "set_moving_mass"]

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -14,14 +14,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.numbered_model import NumberedModel
+    from corota.analysis.numbered_model import NumberedModel, Role
     from corota.model.steps import Step
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Surfaces of ties; slaves and masters of contact.
-Role = Literal["tied", "slave", "master"]
 #: No nodes.
 NO_NODES = np.zeros(0, np.int64)
 #: Rates or multipliers where there are none.
@@ -170,4 +168,4 @@ class Term(Protocol):
 TERMS: dict[str, Callable[[NumberedModel], Term | None]] = {}
 
 
-__all__ = ["TERMS", "Role", "StatePoint", "Term", "TermOutput"]
+__all__ = ["TERMS", "StatePoint", "Term", "TermOutput"]

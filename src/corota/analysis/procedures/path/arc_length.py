@@ -8,7 +8,7 @@ reached stays.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from corota.analysis.terms.contact.path import path_system
 from corota.errors import ConvergenceError, InputError, ModelError, SingularError
 from corota.model.dofs import dof_index
 from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Label
+from corota.model.steps import Static
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -104,7 +105,8 @@ class PathStepper:
     def __init__(self, loop: IncrementLoop, factor: float, increment: int) -> None:
         self.loop, self.system, self.state = loop, loop.system, loop.state
         system, state = loop.system, loop.state
-        self.step: Any = loop.step
+        assert isinstance(loop.step, Static)
+        self.step = loop.step
         self.factor, self.taken = factor, increment
         self.found: Increment | None = None
         self.takes_over = False

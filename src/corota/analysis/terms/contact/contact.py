@@ -10,7 +10,7 @@ directions come from the core.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from corota.analysis.terms.contact.gaps import (
     Terms,
     no_contact,
 )
-from corota.analysis.terms.term import NO_NODES, NONE, Role, Term, TermOutput
+from corota.analysis.terms.term import NO_NODES, NONE, Term, TermOutput
 from corota.errors import ModelError, UnsupportedError
 from corota.lazy import lazy
 from corota.model.contact import ContactPair, Tie
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.saddle_point import SaddlePointSystem
-    from corota.analysis.numbered_model import NumberedModel
+    from corota.analysis.numbered_model import NumberedModel, Role
     from corota.analysis.terms.contact.gaps import Kink
     from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.term import StatePoint
@@ -221,8 +221,7 @@ class ContactTerm(Term):
         self._enter(scheme == "central_difference", ramps)
         if self._stiff:
             self._damp()
-        system: Any = self.system  # the equations, with their supports
-        constrained = system.by_node(system.constrained.astype(float))
+        constrained = self.system.by_node(self.system.constrained.astype(float))
         for pair in self.pairs:
             pair.fixed = pair.start = None
             pair.hold(constrained)

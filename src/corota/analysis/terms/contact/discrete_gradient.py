@@ -12,7 +12,7 @@ slip of the increment.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,8 +20,11 @@ from corota.analysis.terms.contact.gaps import COVERED
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
+    from corota.analysis.linear.types import Kind
     from corota.analysis.terms.contact.gaps import Terms
 
     Floats = NDArray[np.float64]
@@ -34,7 +37,7 @@ def discrete_gradient(
     begun: Floats,
     full: Floats,
     positions: tuple[Floats, Floats],
-    master: Any,
+    master: object,
     rounding: float,
 ) -> Terms:
     """Terms along which tractions act, whose products with the increment are its gap and slip.
@@ -57,10 +60,10 @@ def discrete_gradient(
     known = middle.area > COVERED * full
     parts = [(middle, known[middle.constraint]), (end, ~known[end.constraint])]
 
-    def both(name: str) -> Any:
-        return np.concatenate([getattr(terms, name)[rows] for terms, rows in parts])
+    def both(array: Callable[[Terms], NDArray[Kind]]) -> NDArray[Kind]:
+        return np.concatenate([array(terms)[rows] for terms, rows in parts])
 
-    constraint, variables = both("constraint"), both("variables")
+    constraint, variables = both(lambda t: t.constraint), both(lambda t: t.variables)
     move = x - old
     move[:, 2] = 2.0 * np.tan(0.5 * move[:, 2])
     away = _without_symmetry(master, variables, 0.5 * (x + old), move)
@@ -70,7 +73,7 @@ def discrete_gradient(
     def product(gradient: Floats) -> Floats:
         return np.asarray(np.bincount(constraint, (gradient * moved).sum(axis=1), n), np.float64)
 
-    gradient, along = both("gap_gradient"), both("slip_gradient")
+    gradient, along = both(lambda t: t.gap_gradient), both(lambda t: t.slip_gradient)
     missing = end.gap - begun - product(gradient)
     counts = size > rounding**2
     factor = np.where(counts, missing / np.where(counts, size, 1.0), 0.0)
@@ -78,14 +81,14 @@ def discrete_gradient(
         end,
         constraint=constraint,
         variables=variables,
-        pair=both("pair"),
+        pair=both(lambda t: t.pair),
         gap_gradient=gradient + factor[constraint, None] * away,
         slip_gradient=along,
         slip=product(along),
     )
 
 
-def _without_symmetry(curve: Any, variables: Ints, x: Floats, move: Floats) -> Floats:
+def _without_symmetry(curve: object, variables: Ints, x: Floats, move: Floats) -> Floats:
     """Displacements by variable less the motions that do not change the gap; no rotations."""
     node, part = np.maximum(variables, 0) // 3, variables % 3
     used = variables >= 0

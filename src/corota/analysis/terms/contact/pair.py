@@ -83,8 +83,8 @@ class Pair:
         self.separates = isinstance(item, ContactPair) and item.separates
         #: Whether it acts in the step, and the number of the step in which it began to.
         self.active, self.entered = True, 0
-        build: Any = tie_core if self.tied else contact_core
-        self.core, self.slave, self.master, self.reach, self.depth = build(system, item)
+        core = tie_core(system, item) if isinstance(item, Tie) else contact_core(system, item)
+        self.core, self.slave, self.master, self.reach, self.depth = core
         self.nodes = np.asarray(self.core.nodes, np.int64)
         self.n = len(self.nodes)
         self.of_nodes = len(distinct(self.nodes))
@@ -285,7 +285,7 @@ class Pair:
             return gap
         return np.where(area > COVERED * self.full, gap, -self.conditions.start * self.area)
 
-    def _read(self, raw: dict[str, Any]) -> Terms:
+    def _read(self, raw: _core._Gaps) -> Terms:
         self.seen = self.seen or bool(len(raw["constraint"]))
         if self.beside is not None:
             area = raw["total_area"]
@@ -297,13 +297,16 @@ class Pair:
                 self.owner = self._owners(area)
         return self._shared(raw)
 
-    def _shared(self, raw: dict[str, Any]) -> Terms:
+    def _shared(self, raw: _core._Gaps) -> Terms:
         """Terms in which weak parts belong to their owners."""
         gap, slip, area = raw["total_gap"], raw["total_slip"], raw["total_area"]
         parts = (gap, area)
         constraint = raw["constraint"]
         if (self.owner != np.arange(self.n)).any():
-            gap, slip, area = (np.bincount(self.owner, t, self.n) for t in (gap, slip, area))
+            gap, slip, area = (
+                np.asarray(np.bincount(self.owner, t, self.n), np.float64)
+                for t in (gap, slip, area)
+            )
             constraint = self.owner[constraint]
         return Terms(
             gap,

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -182,18 +182,25 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
         return line_core(system, item, slave, against, reach, depth)
     if master is not None:
         _check_pair(system, item, slave, master)
-    common: dict[str, Any] = {"method": item.method, "reach": reach, "margin": 0.5 * reach}
+    margin = 0.5 * reach
     # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
-    common["corners"] = item.law is None
+    corners = item.law is None
     thickness = _thickness(system, slave)
     # Deeper inside a body, the core takes the opposite side for that of another body.
     depth = 0.5 * float(thickness.min()) if item.itself else float(thickness.max())
-    if not item.itself:
-        common["depth"] = depth
     try:
         if item.itself:
             slave = along_contour(slave, mesh.points)
-            core = _core.Contact.itself(x, slave.nodes, slave.bulge, slave.thickness, **common)
+            core = _core.Contact.itself(
+                x,
+                slave.nodes,
+                slave.bulge,
+                slave.thickness,
+                method=item.method,
+                reach=reach,
+                margin=margin,
+                corners=corners,
+            )
         elif isinstance(item.master, RigidCurve):
             reference = item.master.reference
             node, point = -1, (0.0, 0.0)
@@ -210,7 +217,11 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
                 node,
                 point,
                 turns=item.master.turns,
-                **common,
+                method=item.method,
+                reach=reach,
+                margin=margin,
+                depth=depth,
+                corners=corners,
             )
         else:
             assert master is not None
@@ -229,7 +240,11 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
                 nodes,
                 bulge,
                 master_shapes=shapes,
-                **common,
+                method=item.method,
+                reach=reach,
+                margin=margin,
+                depth=depth,
+                corners=corners,
             )
     except ValueError as error:
         raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
