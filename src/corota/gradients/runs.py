@@ -15,6 +15,8 @@ from corota.gradients.adjoint import adjoints, control_row
 from corota.gradients.differences import derivative
 from corota.gradients.measures import Measure, SpecialMeasure, combine, leaves
 from corota.gradients.parameters import Field, Parameter
+from corota.gradients.sides import one_sided as limit
+from corota.gradients.sides import require_side
 from corota.gradients.store import HistoryStore
 from corota.gradients.trajectory import Trajectory, increments_of
 from corota.model.paths import DisplacementControl
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from corota.gradients.adjoint import Adjoint
+    from corota.gradients.sides import Side
     from corota.gradients.trajectory import Increment, Point
     from corota.model.model import Model
     from corota.model.steps import Step
@@ -49,6 +52,7 @@ def gradient(
     wrt: Parameter | Field | Sequence[Parameter | Field],
     *,
     memory: float | None = None,
+    one_sided: Side | None = None,
 ) -> Any:
     """Gradient of measures of a run by parameters of its model, by the adjoint method.
 
@@ -93,11 +97,49 @@ def gradient(
     """
     measures = [measure] if isinstance(measure, Measure) else list(measure)
     wanted = [wrt] if isinstance(wrt, (Parameter, Field)) else list(wrt)
-    run = Run(results, measures, memory=memory)
-    found = [run.by(parameter) for parameter in wanted]
+    require_side(one_sided)
+    if one_sided is None:
+        run = Run(results, measures, memory=memory)
+        found = [run.by(parameter) for parameter in wanted]
+    else:
+        found = [_beside(results, measures, each, one_sided, memory) for each in wanted]
     if isinstance(measure, Measure):
         found = [each[0] for each in found]
     return found[0] if isinstance(wrt, (Parameter, Field)) else found
+
+
+def _beside(
+    results: Results,
+    measures: Sequence[Measure],
+    parameter: Parameter | Field,
+    side: Side,
+    memory: float | None,
+) -> Floats:
+    """One-sided gradient of all measures by a parameter, shape (n_measures, ...)."""
+    if isinstance(parameter, Field):
+        raise UnsupportedError(
+            f"{type(parameter).__name__} has no one-sided gradient, which takes analyses for each "
+            "number; take gradients.Shape or Attribute"
+        )
+    base, steps = results.model, results.steps
+    threads = int(results.info.get("threads", 1))
+    shape = np.shape(parameter.values(base))
+    sizes = np.broadcast_to(parameter.sizes(base), int(np.prod(shape)))
+    values = Run(results, measures, adjoint=False).values
+    columns = []
+    for k, size in enumerate(sizes):
+        name = f"{type(parameter).__name__} {k}"
+
+        def slope(offset: float, k: int = k, size: float = float(size), name: str = name) -> Floats:
+            def vary(change: float) -> tuple[Model, Sequence[Step]]:
+                return parameter.vary(base, k, offset + change), steps
+
+            beside = solve(vary(0.0)[0], steps, threads=threads, fields=False)
+            return Run(beside, measures, memory=memory).by_variation(vary, size, name)
+
+        columns.append(limit(slope, values, float(size), side, name))
+    rows = np.stack(columns, axis=1) if columns else np.zeros((len(measures), 0))
+    return rows.reshape(len(measures), *shape)
 
 
 class Run:
@@ -135,7 +177,9 @@ class Run:
             if isinstance(leaf, SpecialMeasure):
                 leaf.prepare(results)
         self.store = HistoryStore(memory)
-        self.trajectory = Trajectory(self.model, self.steps, self.threads, self.store)
+        self.trajectory = Trajectory(
+            self.model, self.steps, self.threads, self.store, kinks=not adjoint
+        )
         self.leaf_values, self.adjoints = adjoints(
             self.trajectory, self.increments, self.leaves, adjoint
         )
@@ -318,6 +362,8 @@ class ValueAndGradient:
         Options of :func:`corota.solve`.
     memory : float or None
         As of :func:`gradient`.
+    one_sided : {"left", "right"} or None
+        As of :func:`gradient`.
     runs : int
         Analyses so far.
     """
@@ -328,6 +374,7 @@ class ValueAndGradient:
     sizes: Floats | None = None
     options: dict[str, Any] = field(default_factory=dict)
     memory: float | None = None
+    one_sided: Side | None = None
     runs: int = 0
     results: Results | None = field(default=None, repr=False)
 
@@ -342,22 +389,38 @@ class ValueAndGradient:
         at = np.array(x, dtype=float)
         if at.ndim != 1:
             raise InputError(f"parameters have the shape (k,), not {at.shape}")
-        results = solve(self.build(at.copy()), fields=False, **self.options)
-        self.runs += 1
-        self.results = results
-        run = Run(results, self.measures, memory=self.memory)
+        results = self.results = self._solve(at)
+        run = Run(results, self.measures, self.one_sided is None, self.memory)
         columns = []
         for k, size in enumerate(self._sizes(at)):
+            if self.one_sided is None:
+                columns.append(self._by(run, at, k, float(size)))
+                continue
 
-            def vary(change: float, k: int = k) -> tuple[Model, Sequence[Step]]:
+            def slope(offset: float, k: int = k, size: float = float(size)) -> Floats:
                 moved = at.copy()
-                moved[k] += change
-                model = self.build(moved)
-                return model, _steps_of(model)
+                moved[k] += offset
+                beside = Run(self._solve(moved), self.measures, memory=self.memory)
+                return self._by(beside, moved, k, size)
 
-            columns.append(run.by_variation(vary, float(size), f"parameter {k}"))
+            columns.append(limit(slope, run.values, float(size), self.one_sided, f"parameter {k}"))
         rows = np.stack(columns, axis=1) if columns else np.zeros((len(run.values), 0))
         return (float(run.values[0]), rows[0]) if self.scalar else (run.values, rows)
+
+    def _solve(self, at: Floats) -> Results:
+        self.runs += 1
+        return solve(self.build(at.copy()), fields=False, **self.options)
+
+    def _by(self, run: Run, at: Floats, k: int, size: float) -> Floats:
+        """Derivatives of all measures of a run by one of the parameters."""
+
+        def vary(change: float) -> tuple[Model, Sequence[Step]]:
+            moved = at.copy()
+            moved[k] += change
+            model = self.build(moved)
+            return model, _steps_of(model)
+
+        return run.by_variation(vary, size, f"parameter {k}")
 
     def _sizes(self, at: Floats) -> Floats:
         if self.sizes is not None:
@@ -373,6 +436,7 @@ def value_and_grad(
     *,
     sizes: ArrayLike | None = None,
     memory: float | None = None,
+    one_sided: Side | None = None,
     **options: Any,
 ) -> ValueAndGradient:
     """Make a function that gives the value of a measure and its exact gradient by parameters.
@@ -391,6 +455,8 @@ def value_and_grad(
         Sizes of the parameters over which the model is smooth; by default their magnitudes.
     memory : float, optional
         As of :func:`gradient`.
+    one_sided : {"left", "right"}, optional
+        As of :func:`gradient`: three analyses or more for each parameter.
     **options
         Of :func:`corota.solve`.
 
@@ -417,7 +483,8 @@ def value_and_grad(
     scalar = isinstance(measure, Measure)
     measures = [measure] if isinstance(measure, Measure) else list(measure)
     own = None if sizes is None else np.asarray(sizes, dtype=float)
-    return ValueAndGradient(build, measures, scalar, own, dict(options), memory)
+    require_side(one_sided)
+    return ValueAndGradient(build, measures, scalar, own, dict(options), memory, one_sided)
 
 
 __all__ = ["Run", "ValueAndGradient", "gradient", "value_and_grad"]

@@ -89,13 +89,13 @@ def refuse_surfaces(model: Model) -> None:
         raise UnsupportedError(f"gradients do not include contact with {why}", pair.where)
 
 
-def find(system: System, u: Floats, time: float, at: Evaluation) -> Surfaces:
+def find(system: System, u: Floats, time: float, at: Evaluation, kinks: bool = False) -> Surfaces:
     """Multipliers that balance the forces of a state, on the constraints that are closed there.
 
     Raises
     ------
     UnsupportedError
-        If a constraint stands between open and closed.
+        If a constraint stands between open and closed, or between stick and slip; not with `kinks`.
     """
     term = system.contact_term
     state = evaluate(system, u, np.ones(term.n), time)
@@ -128,14 +128,16 @@ def find(system: System, u: Floats, time: float, at: Evaluation) -> Surfaces:
         size[size == 0.0] = 1.0
         found = lsqr(border / size, force, atol=1e-15, btol=1e-15, iter_lim=20 * len(which) + 100)
         multipliers[which] = found[0] / size
-    _refuse_between(system, states, multipliers)
+    if not kinks:
+        _refuse_between(system, states, multipliers)
     signs = []
     for k, (pair, (p, q)) in enumerate(zip(term.pairs, term.parts(multipliers), strict=True)):
         signs.append(np.sign(q) if pair.two else np.zeros(0))
         if pair.friction:
             slips = (states[k] == CLOSED) & (np.abs(q) >= (1.0 - LIMIT) * pair.friction * p)
             states[k][slips] = SLIPPING
-            _refuse_stuck(system, pair, state.terms[k], q, slips)
+            if not kinks:
+                _refuse_stuck(system, pair, state.terms[k], q, slips)
     return Surfaces(multipliers, states, signs)
 
 

@@ -181,6 +181,8 @@ class Trajectory:
     threads : int
     store : HistoryStore, optional
         Keeps the histories of the increments.
+    kinks : bool
+        Allow states without a derivative.
 
     Raises
     ------
@@ -194,8 +196,10 @@ class Trajectory:
         steps: Sequence[Step],
         threads: int = 1,
         store: HistoryStore | None = None,
+        kinks: bool = False,
     ) -> None:
         self.model, self.steps, self.threads = model, list(steps), threads
+        self.kinks = kinks
         self.store = HistoryStore() if store is None else store
         refuse(model)
         refuse_motion(model, steps)
@@ -251,7 +255,7 @@ class Trajectory:
             u, at = point.u, point.at
             if system.n_multipliers:
                 if increment.surfaces is None:
-                    increment.surfaces = find(system, u, increment.time, at)
+                    increment.surfaces = find(system, u, increment.time, at, self.kinks)
                 point.gaps = add_forces(system, u, increment.time, at, increment.surfaces)
             yield point
             if increment.rates is not None and not increment.dt:
