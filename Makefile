@@ -15,6 +15,7 @@ CARGO := --release --locked
 # The tests run in seconds; optimized, they would build for minutes. Unoptimized frames are large.
 UNOPTIMIZED := --config 'profile.release.package.corota.opt-level=0'
 WITH_PYTHON := --features python,pyo3/extension-module
+AS_MATURIN = $(addprefix PYO3_CONFIG_FILE=$(CURDIR)/,$(lastword $(wildcard target/maturin/pyo3-config-*.txt)))
 
 export VIRTUAL_ENV := $(abspath $(VENV))
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
@@ -46,12 +47,14 @@ setup: $(CORE) ## Make the environment and build the compute core
 demo: $(CORE) ## Run the compliant gripper: progress, files and a picture
 	@$(BIN)/python examples/gripper/gripper.py --output $(RESULTS)/gripper
 
-test: test-rust test-python ## Set up everything and run the tests but for slow ones
+test: ## Set up everything and run the tests but for slow ones
+	@$(MAKE) test-rust
+	@$(MAKE) test-python
 
-test-rust: $(CORE)
+test-rust: $(DEPS)
 	RUST_MIN_STACK=67108864 cargo test --quiet $(CARGO) $(UNOPTIMIZED) --jobs $(JOBS)
 
-test-python: $(CORE) test-rust
+test-python: $(CORE)
 	$(BIN)/python -m pytest -n $(JOBS)
 
 test-slow: $(CORE) ## Run the slow tests: full products of cases, long examples
@@ -88,9 +91,11 @@ lint-python: $(DEPS)
 	$(BIN)/python scripts/check_tree.py
 	$(BIN)/python scripts/check_words.py
 
+# In the environment in which maturin compiles: in another one, the next wheel would compile all of
+# the crate again.
 clippy: $(DEPS)
 	cargo fmt --check
-	cargo clippy --quiet $(CARGO) --jobs $(JOBS) --all-targets $(WITH_PYTHON) -- -D warnings
+	env $(AS_MATURIN) cargo clippy --quiet $(CARGO) --jobs $(JOBS) --all-targets $(WITH_PYTHON) -- -D warnings
 
 format: $(DEPS) ## Format both languages
 	$(BIN)/ruff check --fix --quiet .

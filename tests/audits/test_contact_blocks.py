@@ -15,6 +15,7 @@ import pytest
 import corota as ct
 from corota.mesh.data import Cells
 from tests.support.blocks import METHODS, STIFF, block, reaction, scalar, solve, step_ends
+from tests.support.pairs import cover
 
 FLOOR = ct.RigidCurve.line((-100.0, 0.0), (100.0, 0.0))
 
@@ -125,8 +126,9 @@ def test_block_drawn_along_an_incline(method: str, up: bool) -> None:
     assert pull == pytest.approx(load * (math.sin(a) + sign * mu * math.cos(a)), rel=1e-4)
 
 
-@pytest.mark.parametrize("role", ["wedge slave", "block slave"])
-@pytest.mark.parametrize("mu", [0.05, 0.3])
+@pytest.mark.parametrize(
+    ("mu", "role"), cover([0.05, 0.3], ["wedge slave", "block slave"], strength=1)
+)
 def test_a_wedge_lifts_a_block_and_is_drawn_out(role: str, mu: float) -> None:
     """A wedge of angle a is driven below a block that a wall guides without friction and that
     bears P. With phi = atan(mu), the face passes P at the angle a + phi, the floor at phi: the

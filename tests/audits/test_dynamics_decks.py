@@ -12,6 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import corota as ct
+from support.pairs import cover
 from support.particles import CHAIN_CARDS, MASSES, STIFFNESS, chain_matrices, linear_motion
 
 pytestmark = [
@@ -115,8 +116,9 @@ AMPLITUDES = {
 }
 
 
-@pytest.mark.parametrize("definition", list(AMPLITUDES))
-@pytest.mark.parametrize("procedure", ["direct", "modal"])
+@pytest.mark.parametrize(
+    ("procedure", "definition"), cover(["direct", "modal"], list(AMPLITUDES), strength=1)
+)
 def test_base_moved_by_every_kind_of_amplitude(definition, procedure, tmp_path):
     # The base of the chain moves by 0.1 A(t): displacement of the tip, reaction of the base.
     card, value = AMPLITUDES[definition]

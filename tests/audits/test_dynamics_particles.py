@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from support.pairs import quickly
 from support.particles import (
     IMPLICIT,
     bars,
@@ -19,7 +20,10 @@ from support.particles import (
 pytestmark = pytest.mark.filterwarnings("ignore:central differences took")
 
 
-@pytest.mark.parametrize("scheme", [*IMPLICIT, "central_difference"])
+@pytest.mark.parametrize(
+    "scheme",
+    quickly([*IMPLICIT, "central_difference"], "hht", "energy_momentum", "central_difference"),
+)
 def test_spring_pendulum_that_loops(scheme):
     # Newton's law of a particle on a linear spring, EA/L = 50, that goes round with a slack
     # spring in between; SciPy DOP853.
@@ -103,7 +107,7 @@ def test_support_that_starts_with_a_jump_of_velocity(scheme):
     np.testing.assert_allclose(extrapolated(run, 100), exact, rtol=0, atol=2e-3)
 
 
-@pytest.mark.parametrize("scheme", IMPLICIT)
+@pytest.mark.parametrize("scheme", quickly(IMPLICIT, "generalized_alpha", "energy_momentum"))
 def test_spinning_spring_with_a_dashpot_in_line(scheme):
     # Two particles joined by a spring and a dashpot fly and spin: the dashpot acts on the rate of
     # the length alone. Its dissipation is the integral of c (dr/dt)^2.

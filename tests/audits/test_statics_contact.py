@@ -17,6 +17,7 @@ from scipy.optimize import brentq
 import corota as ct
 from corota.mesh.data import Cells
 from support.audits import CELL, DRILLING, Bar, ends, rotation
+from support.pairs import cover
 
 pytestmark = pytest.mark.filterwarnings("ignore:local strain reaches")
 
@@ -49,9 +50,10 @@ def sliders(k: np.ndarray, bound: np.ndarray, way: np.ndarray) -> tuple[np.ndarr
     return np.array(found), np.array(lost)
 
 
-@pytest.mark.parametrize("angle", [0.0, 33.0])
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
-@pytest.mark.parametrize("element", ["Q4I", "Q8R", "Q4D"])
+@pytest.mark.parametrize(
+    ("element", "method", "angle"),
+    cover(["Q4I", "Q8R", "Q4D"], ["mortar", "node_to_segment"], [0.0, 33.0]),
+)
 def test_chain_of_sliding_blocks(element: str, method: Any, angle: float) -> None:
     """Three stiff blocks on a rigid line, springs between them, the first is drawn to and fro.
 
@@ -208,9 +210,14 @@ def test_disc_that_spins_on_a_block(element: str) -> None:
 # --- Contact with heat and flow ---
 
 
-@pytest.mark.parametrize("angle", [0.0, 25.0])
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
-@pytest.mark.parametrize("pair", [("Q4I", "Q8R"), ("T6", "Q4I"), ("Q8", "Q8"), ("OPT", "Q4D")])
+@pytest.mark.parametrize(
+    ("pair", "method", "angle"),
+    cover(
+        [("Q4I", "Q8R"), ("T6", "Q4I"), ("Q8", "Q8"), ("OPT", "Q4D")],
+        ["mortar", "node_to_segment"],
+        [0.0, 25.0],
+    ),
+)
 def test_heated_bar_closes_a_gap_yields_and_comes_free(
     pair: tuple[str, str], method: Any, angle: float
 ) -> None:
@@ -288,9 +295,10 @@ def test_heated_bar_closes_a_gap_yields_and_comes_free(
     assert got[3].C[mesh.nodes_of("a.right")][0, 2] > 2e-3
 
 
-@pytest.mark.parametrize("flows", [False, True])
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
-@pytest.mark.parametrize("element", ["Q4I", "Q8R", "Q4D"])
+@pytest.mark.parametrize(
+    ("element", "method", "flows"),
+    cover(["Q4I", "Q8R", "Q4D"], ["mortar", "node_to_segment"], [False, True]),
+)
 def test_snap_through_onto_a_block(element: str, method: Any, flows: bool) -> None:
     """Two bars snap by arc length; their node carries a rigid plate that meets a block that flows.
 

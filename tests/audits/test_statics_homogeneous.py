@@ -11,13 +11,14 @@ import pytest
 import corota as ct
 from support.audits import CELL, rotation
 from support.homogeneous import PATH, Point, drive, hencky_cauchy, linear_cauchy
+from support.pairs import cover
 
 pytestmark = pytest.mark.filterwarnings("ignore:local strain reaches")
 
 
-@pytest.mark.parametrize("plane", ["stress", "strain"])
-@pytest.mark.parametrize("strain", ["linear", "logarithmic"])
-@pytest.mark.parametrize("element", CELL)
+@pytest.mark.parametrize(
+    ("element", "strain", "plane"), cover(CELL, ["linear", "logarithmic"], ["stress", "strain"])
+)
 def test_yield_unload_reverse_while_turning(element: str, strain: str, plane: str) -> None:
     """Combined hardening in states that stretch, unload and reverse while the body turns.
 
@@ -57,9 +58,10 @@ BIG = [
 ] + [rotation(0.8) @ np.array([[0.7, -0.2], [0.0, 1.2]])]
 
 
-@pytest.mark.parametrize("plane", ["stress", "strain"])
-@pytest.mark.parametrize("strain", ["green_lagrange", "logarithmic"])
-@pytest.mark.parametrize("element", CELL)
+@pytest.mark.parametrize(
+    ("element", "strain", "plane"),
+    cover(CELL, ["green_lagrange", "logarithmic"], ["stress", "strain"]),
+)
 def test_large_elastic_strain_is_cauchy_stress(element: str, strain: str, plane: str) -> None:
     """Elastic strain of tens of percent with rotation: closed forms of both hyperelastic laws.
 

@@ -19,6 +19,7 @@ import corota as ct
 from corota.mesh.data import Cells
 from corota.model.loads import Fixed, NodalForce
 from support.audits import CELL, DRILLING, rotation, run
+from support.pairs import cover
 
 pytestmark = pytest.mark.filterwarnings("ignore:local strain reaches")
 
@@ -176,8 +177,10 @@ AMPLITUDES: dict[str, tuple[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("what", ["cload", "dload", "grav", "boundary", "temperature"])
-@pytest.mark.parametrize("name", AMPLITUDES)
+@pytest.mark.parametrize(
+    ("name", "what"),
+    cover(AMPLITUDES, ["cload", "dload", "grav", "boundary", "temperature"], strength=1),
+)
 def test_kinds_of_amplitude_on_kinds_of_load(tmp_path: Path, name: str, what: str) -> None:
     """Each definition of *AMPLITUDE, formulas of the Abaqus manual, drives each kind of load.
 

@@ -71,15 +71,14 @@ def radial(path, increments, finite, n=40):
     return u[0], u[-1]
 
 
-@pytest.mark.parametrize("element", ["Q8R", "Q4I", "Q4S"])
 @pytest.mark.parametrize(
-    ("path", "increments", "finite"),
+    ("element", "path", "increments", "finite"),
     [
-        ([(-0.002, 27.0, 0.0)], 1, False),
-        ([(-0.002, 27.0, 0.0), (-0.002, -27.0, -27.0)], 10, False),
-        ([(-0.002, 27.0, 0.0), (-0.002, 27.0, -27.0)], 10, True),
-        ([(-0.04, 27.0, 0.0)], 10, True),
-        ([(0.04, 27.0, 0.0), (0.02, 0.0, 27.0)], 10, True),
+        ("Q4S", [(-0.002, 27.0, 0.0)], 1, False),
+        ("Q8R", [(-0.002, 27.0, 0.0), (-0.002, -27.0, -27.0)], 10, False),
+        ("Q4I", [(-0.002, 27.0, 0.0), (-0.002, 27.0, -27.0)], 10, True),
+        ("Q8R", [(-0.04, 27.0, 0.0)], 10, True),
+        ("Q4S", [(0.04, 27.0, 0.0), (0.02, 0.0, 27.0)], 10, True),
     ],
     ids=["one increment", "reversed", "unloaded", "pressed", "pulled and back"],
 )

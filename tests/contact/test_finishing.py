@@ -111,6 +111,7 @@ def test_a_ring_that_yields_is_found_between_the_gap_and_the_first_collapse():
     assert up == pytest.approx(0.22315, rel=1e-3)  # node to segment: 0.223153
 
 
+@pytest.mark.slow
 def test_a_clip_finishes_where_no_relaxed_position_balances():
     # An elastic clip with sharp corners and friction 1.
     notes = []

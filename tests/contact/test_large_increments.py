@@ -11,11 +11,12 @@ import pytest
 import corota as ct
 from tests.audits.test_contact_arcs import belt, polygon_ratio
 from tests.support.blocks import METHODS, block, chain, reaction, scalar, solve
+from tests.support.pairs import quickly
 
 TURN = 2.0 * math.pi
 
 
-@pytest.mark.parametrize("turns", [1.0, -1.0, 2.0, 0.998])
+@pytest.mark.parametrize("turns", quickly([1.0, -1.0, 2.0, 0.998], -1.0, 0.998))
 def test_a_drum_turns_whole_turns_below_a_rope(turns: float) -> None:
     """Tensions differ by the factor of the polygon; the rope does not pass through the drum."""
     angle, n, mu, pull = 90.0, 8, 0.25, 1.0

@@ -11,6 +11,7 @@ import pytest
 
 import corota as ct
 from corota.analysis.terms.contact.tunneling import times_of_crossing
+from support.pairs import cover
 
 LENGTH, HIGH, E, DEEP = 4.0, 0.05, 1000.0, 0.2
 #: Left end of the plate, beside a node of the strip.
@@ -41,10 +42,10 @@ def press(gap: float, increments: int, method: str, way: str, element: str = "Q4
     return ct.solve(model, ct.Static(increments=increments), threads=1)
 
 
-@pytest.mark.parametrize("way", ["rigid", "deformable"])
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
-@pytest.mark.parametrize("gap", [0.0, 0.01, 0.08])
-@pytest.mark.parametrize("increments", [1, 2])
+@pytest.mark.parametrize(
+    ("increments", "gap", "method", "way"),
+    cover([1, 2], [0.0, 0.01, 0.08], ["mortar", "node_to_segment"], ["rigid", "deformable"]),
+)
 def test_a_plate_presses_a_thin_strip_in_any_increments(
     increments: int, gap: float, method: str, way: str
 ) -> None:
@@ -56,10 +57,15 @@ def test_a_plate_presses_a_thin_strip_in_any_increments(
     assert 0.97 * cantilever / last**3 < -force < 1.03 * cantilever / START**3
 
 
-@pytest.mark.parametrize("second", [{"increments": 1}, {}, {"smallest_increment": 0.9}])
-@pytest.mark.parametrize("before", [None, {"increments": 1}, {}])
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
-@pytest.mark.parametrize("gap", [0.0, 0.01])
+@pytest.mark.parametrize(
+    ("gap", "method", "before", "second"),
+    cover(
+        [0.0, 0.01],
+        ["mortar", "node_to_segment"],
+        [None, {"increments": 1}, {}],
+        [{"increments": 1}, {}, {"smallest_increment": 0.9}],
+    ),
+)
 def test_a_plate_that_touches_or_rests_presses_in_any_step(
     gap: float, method: str, before: dict[str, float] | None, second: dict[str, float]
 ) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from benchmarks import objectivity
 from corota.model.contact import METHODS
+from support.pairs import cover
 
 CASES = [
     (objectivity.drag, "rigid"),
@@ -23,9 +24,10 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize(("make", "role"), CASES)
-@pytest.mark.parametrize("degrees", [90.0, 180.0, 400.0])
+@pytest.mark.parametrize(
+    ("degrees", "make", "role", "method"),
+    [(a, *b, c) for a, b, c in cover([90.0, 180.0, 400.0], CASES, METHODS)],
+)
 def test_forces_turn_with_a_superposed_rotation(make, role, method, degrees):
     """In each of two increments, friction included; slips of whole turns belong to no body."""
     still = objectivity.measured(make(method, role), 0.0)

@@ -15,13 +15,14 @@ from corota.mesh import Mesh
 from corota.mesh.data import Cells
 from corota.model.steps import Dynamic
 from support.models import cell
+from support.pairs import cover
 
 SCHEMES = ("newmark", "hht", "generalized_alpha", "energy_momentum")
 
 
-@pytest.mark.parametrize("speed", [1e-2, 1e-4, 1e-6])
-@pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("element", ["T3", "Q4I", "Q4D", "Q8"])
+@pytest.mark.parametrize(
+    ("element", "scheme", "speed"), cover(["T3", "Q4I", "Q4D", "Q8"], SCHEMES, [1e-2, 1e-4, 1e-6])
+)
 def test_a_steel_bar_drifts(element, scheme, speed):
     mesh = ct.mesh.rectangle(1.0, 0.05, 20, 1, cell(element))
     model = ct.Model(mesh)
@@ -36,9 +37,7 @@ def test_a_steel_bar_drifts(element, scheme, speed):
     assert frame.U[:, 0].mean() == pytest.approx(0.2 * speed, rel=rel)
 
 
-@pytest.mark.parametrize("mass", [1e-6, 1.0, 1e6])
-@pytest.mark.parametrize("speed", [1e-6, 1.0])
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize(("scheme", "speed", "mass"), cover(SCHEMES, [1e-6, 1.0], [1e-6, 1.0, 1e6]))
 def test_a_mass_on_a_spring_swings(scheme, speed, mass):
     model = ct.Model(
         Mesh(

@@ -36,6 +36,8 @@ def solved() -> dict[str, object]:
     return {"ct": ct, "model": model, "results": ct.solve(model, ct.Static(increments=2))}
 
 
+#: Pages whose programs take seconds; they run with the slow tests.
+LONG = {"cable_clip", "constant_force", "crushed_tube", "detent", "snap_fit"}
 #: Names that pages find defined; the others must begin from nothing.
 GIVEN: dict[str, Callable[[], dict[str, object]]] = defaultdict(lambda: dict, output=solved)
 
@@ -46,7 +48,13 @@ def programs(page: Path) -> str:
 
 
 @pytest.mark.parametrize(
-    "page", [p for p in PAGES if programs(p)], ids=lambda p: str(p.relative_to(ROOT))
+    "page",
+    [
+        pytest.param(p, marks=[pytest.mark.slow] if p.stem in LONG else [])
+        for p in PAGES
+        if programs(p)
+    ],
+    ids=lambda p: str(p.relative_to(ROOT)),
 )
 def test_python_of_the_page_runs(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

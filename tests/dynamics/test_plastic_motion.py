@@ -11,6 +11,7 @@ import pytest
 import corota as ct
 from tests.dynamics.test_schemes import column, run
 from tests.support.models import cell
+from tests.support.pairs import cover
 
 IMPLICIT = {
     "hht": {"alpha": 0.0},
@@ -33,8 +34,7 @@ def struck(element, free=False):
     return model
 
 
-@pytest.mark.parametrize("scheme", IMPLICIT)
-@pytest.mark.parametrize("element", ["Q4I", "Q4D", "Q8"])
+@pytest.mark.parametrize(("element", "scheme"), cover(["Q4I", "Q4D", "Q8"], IMPLICIT, strength=1))
 def test_yielding_takes_energy_and_never_gives_it_back(element, scheme):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

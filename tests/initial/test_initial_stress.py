@@ -13,6 +13,7 @@ from corota.analysis.linear.solvers import SOLVERS
 from support.lines import chain, lines
 from support.models import ELEMENTS, cell
 from support.newton import solve_quadratically
+from support.pairs import cover
 
 E, NU = 1000.0, 0.3
 
@@ -35,9 +36,9 @@ def stresses(frame: ct.results.Frame) -> np.ndarray:
     return np.concatenate([f.values["S"].reshape(-1, 4) for f in frame.fields])
 
 
-@pytest.mark.parametrize("law", ["elastic", "mises"])
-@pytest.mark.parametrize("plane", ["stress", "strain"])
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize(
+    ("element", "plane", "law"), cover(ELEMENTS, ["stress", "strain"], ["elastic", "mises"])
+)
 def test_held_plate_keeps_its_initial_stress(element: str, plane: str, law: str) -> None:
     model = plate(element, plane, law)
     zz = 4.0 if plane == "strain" else 0.0

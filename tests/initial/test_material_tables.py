@@ -11,6 +11,7 @@ import pytest
 
 import corota as ct
 from support.models import ELEMENTS, cell
+from support.pairs import cover
 
 COLD, HOT = 20.0, 420.0
 E0, E1, NU, ALPHA = 1000.0, 600.0, 0.3, 1e-3
@@ -66,9 +67,7 @@ def pulled(element: str, material: Any, plane: str, temperature: float) -> ct.Fr
     return ct.solve(model, threads=1).frames[-1]
 
 
-@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)
-@pytest.mark.parametrize("plane", ["stress", "strain"])
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize(("element", "plane", "law"), cover(ELEMENTS, ["stress", "strain"], LAWS))
 def test_at_one_temperature_it_is_the_material_there(element: str, plane: str, law: Any) -> None:
     if law is ramberg_osgood and element == "Q4R":
         pytest.skip("its hourglass would stay elastic")

@@ -14,6 +14,7 @@ import pytest
 import corota as ct
 from corota.mesh import Mesh
 from corota.mesh.data import Cells
+from support.pairs import cover
 
 LOADS: dict[str, Callable[[Any, float], None]] = {
     "dead traction": lambda s, f: s.traction("top", x=0.05 * f, y=-0.1 * f),
@@ -54,9 +55,7 @@ def same_after_writing(model: ct.Model, steps: list[Any], path: Path) -> None:
         np.testing.assert_allclose(two.U, one.U, rtol=0.0, atol=1e-9 * scale)
 
 
-@pytest.mark.parametrize("then", [0.0, 0.5, -1.0])
-@pytest.mark.parametrize("kind", STEPS)
-@pytest.mark.parametrize("load", LOADS)
+@pytest.mark.parametrize(("load", "kind", "then"), cover(LOADS, STEPS, [0.0, 0.5, -1.0]))
 def test_a_load_and_its_change(load: str, kind: str, then: float, tmp_path: Path) -> None:
     first, second = STEPS["static"](), STEPS[kind]()
     if kind == "linear":

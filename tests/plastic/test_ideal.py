@@ -15,6 +15,7 @@ import pytest
 
 import corota as ct
 from corota.model import elements
+from support.pairs import cover
 
 #: At finite strain a bar without hardening necks, which is said; the uniform state is followed.
 pytestmark = pytest.mark.filterwarnings("ignore:.*bifurcation or limit point:UserWarning")
@@ -50,10 +51,10 @@ def pulled(model: ct.Model, way: float, nlgeom: bool) -> float:
     return float(frame.RF[model.mesh.node_sets["right"], 0].sum())
 
 
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("nlgeom", [False, True])
-@pytest.mark.parametrize("plane", ["stress", "strain"])
-@pytest.mark.parametrize("element", PLANAR)
+@pytest.mark.parametrize(
+    ("element", "plane", "nlgeom", "sign"),
+    cover(PLANAR, ["stress", "strain"], [False, True], [1.0, -1.0]),
+)
 def test_a_bar_carries_its_yield_force_on(
     element: str, plane: str, nlgeom: bool, sign: float
 ) -> None:

@@ -77,7 +77,13 @@ def state_differences(one, other):
     return found
 
 
-def goes_on(build, every=1):
+@pytest.fixture(params=[3, pytest.param(1, marks=pytest.mark.slow)], ids=["third", "each"])
+def every(request):
+    """Which of the checkpoints are tried."""
+    return request.param
+
+
+def goes_on(build, every):
     found, results, error = whole_run(build)
     if not found:
         assert not {s.procedure for s in build().steps} & {"static", "dynamic"}
@@ -102,19 +108,19 @@ def goes_on(build, every=1):
 
 
 @pytest.mark.parametrize("name", DECKS)
-def test_decks(name, tmp_path):
+def test_decks(name, every, tmp_path):
     deck = tmp_path / "job.inp"
     deck.write_text(DECKS[name]())
-    goes_on(lambda: ct.read(deck))
+    goes_on(lambda: ct.read(deck), every)
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_models(name):
-    goes_on(MODELS[name])
+def test_models(name, every):
+    goes_on(MODELS[name], every)
 
 
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in EXAMPLES]
 )
-def test_examples(name):
-    goes_on(EXAMPLES[name], every=10 if name in LONG else 1)
+def test_examples(name, every):
+    goes_on(EXAMPLES[name], 10 if name in LONG else every)

@@ -23,6 +23,7 @@ from corota.analysis.run import solve
 from corota.errors import FileError
 from corota.io.checkpoint import load, newest
 from corota.io.folder_lock import FolderLock
+from support.pairs import quickly
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")
 
@@ -282,7 +283,9 @@ def _text(path):
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGUSR1"), reason="signals of this system")
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU"])
+@pytest.mark.parametrize(
+    "name", quickly(["SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU"], "SIGINT", "SIGTERM")
+)
 def test_signal_ends_with_a_checkpoint_and_says_how_to_go_on(tmp_path, name):
     run = start(tmp_path, 50.0)
     run.send_signal(getattr(signal, name))

@@ -11,6 +11,7 @@ import pytest
 import corota as ct
 from corota.model import elements
 from corota.verification.models import DRILLING, cell
+from support.pairs import cover
 
 PLANAR = [name for name in elements.names() if not elements.find(name).weighted]
 RUBBER = {
@@ -34,9 +35,7 @@ def nominal(law: Any, plane: str, stretch: float) -> tuple[float, float]:
     return float(raw["stress"][0, 0] / stretch), side
 
 
-@pytest.mark.parametrize("name", RUBBER)
-@pytest.mark.parametrize("plane", ["strain", "stress"])
-@pytest.mark.parametrize("element", PLANAR)
+@pytest.mark.parametrize(("element", "plane", "name"), cover(PLANAR, ["strain", "stress"], RUBBER))
 def test_pulled_and_turned_block(element: str, plane: Any, name: str) -> None:
     """A distorted mesh stretched by 1.6 and turned by 70 degrees at once: force, thickness."""
     law, stretch, turn = RUBBER[name], 1.6, np.radians(70.0)
