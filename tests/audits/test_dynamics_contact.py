@@ -120,7 +120,7 @@ def test_block_on_a_shaken_table(scheme):
     np.testing.assert_allclose(frames[-1].U[:-1, 0].mean(), way, rtol=0.02)
 
 
-@pytest.mark.parametrize("scheme", quickly(DAMPED, "hht", "energy_momentum"))
+@pytest.mark.parametrize("scheme", quickly(DAMPED, "hht"))
 def test_oscillator_with_coulomb_friction(scheme):
     # Half swings of m x'' = -k x - mu N sign(x') lose 2 mu N / k each; then it sticks.
     mu, preload, k, start = 0.25, 8.0, 60.0, 0.2
@@ -142,7 +142,7 @@ def test_oscillator_with_coulomb_friction(scheme):
     np.testing.assert_allclose(abs(x[-1]), abs(peaks[3]), atol=0.015 * start)
 
 
-@pytest.mark.parametrize("scheme", quickly(DAMPED, "generalized_alpha", "energy_momentum"))
+@pytest.mark.parametrize("scheme", quickly(DAMPED, "energy_momentum"))
 def test_block_on_a_belt_sticks_and_slips(scheme):
     # It rides until k x = mu N; then x = mu N / k + (v / w) sin w t, which touches the speed of
     # the belt once a period, and slips on.

@@ -52,7 +52,7 @@ def sliders(k: np.ndarray, bound: np.ndarray, way: np.ndarray) -> tuple[np.ndarr
 
 @pytest.mark.parametrize(
     ("element", "method", "angle"),
-    cover(["Q4I", "Q8R", "Q4D"], ["mortar", "node_to_segment"], [0.0, 33.0]),
+    cover(["Q4I", "Q8R", "Q4D"], ["mortar", "node_to_segment"], [0.0, 33.0], strength=1),
 )
 def test_chain_of_sliding_blocks(element: str, method: Any, angle: float) -> None:
     """Three stiff blocks on a rigid line, springs between them, the first is drawn to and fro.
@@ -216,6 +216,7 @@ def test_disc_that_spins_on_a_block(element: str) -> None:
         [("Q4I", "Q8R"), ("T6", "Q4I"), ("Q8", "Q8"), ("OPT", "Q4D")],
         ["mortar", "node_to_segment"],
         [0.0, 25.0],
+        strength=1,
     ),
 )
 def test_heated_bar_closes_a_gap_yields_and_comes_free(

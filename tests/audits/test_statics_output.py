@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota.cli import main
 from corota.mesh.data import Cells
 from support.audits import CELL, DRILLING, deck_mesh, ends, rotation, run
 from support.pairs import cover, quickly
@@ -268,16 +269,11 @@ every, 60.
 @pytest.mark.parametrize("format_", ["npz", "vtu", "csv", "pvd"])
 def test_results_converted_by_the_command(tmp_path: Path, format_: str) -> None:
     """`corota convert` of a result file: the last displacement and the energies are the same."""
-    import subprocess
-    import sys
-
     model, _, steps = part("Q4I")
     results = ct.solve(model, steps[:1], threads=1)
     results.write(tmp_path / "job.vtkhdf")
     out = tmp_path / f"new.{format_}"
-    command = [sys.executable, "-m", "corota", "convert", str(tmp_path / "job.vtkhdf"), str(out)]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    assert main(["convert", str(tmp_path / "job.vtkhdf"), str(out)]) == 0
     assert out.stat().st_size > 0
     if format_ == "npz":
         with np.load(out) as stored:
