@@ -179,7 +179,6 @@ def test_what_a_deck_cannot_hold_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda m: m.dashpot(1, x=1.0), "dashpot to the ground"),
         (lambda m: m.equation((1, "x", 1.0), (2, "x", -1.0), rhs=0.1), "right-hand side 0.1"),
         (
             lambda m: m.couple("right", 2, kind="distributing", dofs="x", weights=[1.0, 2.0, 3.0]),

@@ -101,7 +101,7 @@ def test_a_connector_holds_as_a_support_does(
 
 @pytest.mark.parametrize(
     ("kind", "x", "said"),
-    [("LINK", "4.", "stiff material"), ("JOIN", "4.", "apart"), ("AXIAL", "4.", "SPRINGA")],
+    [("BUSHING", "4.", "there are JOIN"), ("JOIN", "4.", "apart")],
 )
 def test_other_connectors_say_what_to_give(tmp_path: Path, kind: str, x: str, said: str) -> None:
     with pytest.raises(ct.DeckError, match=said) as caught:

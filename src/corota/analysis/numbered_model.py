@@ -88,13 +88,19 @@ class NumberedModel:
             own = elements.find(b.section.element).dofs_per_node
             np.maximum.at(carried, b.nodes.ravel(), own)
         extra = np.zeros(0, np.uint8)
-        if model.constraints or model.contacts:
-            from corota.analysis.constraints.setup import carry_curves, extra_dofs
+        if model.constraints or model.contacts or model.point_masses or model.dashpots:
+            from corota.analysis.constraints.setup import (
+                carry_attachments,
+                carry_curves,
+                extra_dofs,
+            )
 
             if model.constraints:
                 extra = extra_dofs(model, carried > 0)
             if model.contacts:
                 extra = carry_curves(model, carried, extra)
+            if model.point_masses or model.dashpots:
+                extra = carry_attachments(model, carried, extra)
         if self.communicator.size > 1:
             # All processes number the dofs of all elements.
             extra = np.maximum(extra if len(extra) else 0, carried).astype(np.uint8)

@@ -86,7 +86,7 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
             drawn["dashpot"].append(mesh.points[[damper.first, damper.second]])
         else:
             at = mesh.points[damper.first]
-            axes = [k for k in (0, 1) if damper.to_ground[k]]
+            axes = [k for k in (0, 1) if damper.to_ground[k] or k in (damper.dofs or ())[:1]]
             drawn["dashpot"] += [np.stack([at - 0.07 * size * np.eye(2)[k], at]) for k in axes]
     looks = {
         "beam": (BEAM, 2.2, "-"),

@@ -87,6 +87,23 @@ def _existing(model: Model, found: set[int]) -> Ints:
     return np.array(sorted(found), np.int64)
 
 
+def carry_attachments(model: Model, carried: Ints, extra: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Give nodes of point masses and dashpots their dofs; changes `carried`, returns `extra`."""
+    wanted = np.zeros(model.mesh.n_nodes, np.uint8)
+    for mass in model.point_masses:
+        nodes = _nodes(model, mass.nodes)
+        wanted[nodes] = np.maximum(wanted[nodes], 3 if mass.inertia else 2)
+    for item in model.dashpots:
+        turns = item.to_ground[2] > 0.0 or 2 in (item.dofs or ())
+        ends = [item.first] if item.second is None else [item.first, item.second]
+        wanted[ends] = np.maximum(wanted[ends], 3 if turns else 2)
+    extra = extra if len(extra) else np.zeros(model.mesh.n_nodes, np.uint8)
+    # Nodes of elements and constraints keep their dofs: a rotation missing there is an error.
+    bare = (carried == 0) & (extra == 0)
+    extra[bare] = carried[bare] = wanted[bare]
+    return extra
+
+
 def carry_curves(model: Model, carried: Ints, extra: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Give reference nodes of rigid curves their dofs; changes `carried`, returns `extra`."""
     for nodes, count in ((reference_nodes(model), 3), (gap_nodes(model), 2)):

@@ -198,7 +198,7 @@ class DynamicStepper(NewtonStepper):
         self.error = 0.0
         if outcome.converged and not step.fixed_increments:
             self.error = _local_error(system, self.motion, step, *self._judged)
-            # An impact that no increment is short enough for is taken as it is.
+            # What no increment is short enough for is taken as it is.
             shorter = CUT * dt >= step.smallest_increment
             if shorter:
                 begin, end, energy_balance = self.motion.start, self.motion.end, self.energy_balance
@@ -206,9 +206,31 @@ class DynamicStepper(NewtonStepper):
                 moved, meets = end.u - begin.u, self.approach.meets
                 missed = contact.impact_error(moved, energy, step.error_tolerance, meets)
                 self.error = max(self.error, missed)
-            if self.error > 1.0 and (shorter or not system.opens):
+            if self.error > 1.0 and CUT * dt >= self._shortest:
                 reason = f"local error {self.error:.2g} times the allowed one"
         return Attempt(target, outcome, contact, reason)
+
+    @property
+    def _shortest(self) -> float:
+        """Increment below which the local error cuts no further [time].
+
+        That is the smallest one, and the mean of those that are left until the end of the step.
+        """
+        step, control = self.step, self.control
+        left = max(step.max_increments - control.number, 1)
+        return max(step.smallest_increment, (step.period - control.time) / left)
+
+    def _note_error(self) -> None:
+        """Tell once that the increments are too long for the motion."""
+        begin = f"step {self.loop.number} takes longer increments than the motion needs"
+        if any(note.startswith(begin) for note in self.state.notes):
+            return
+        note = (
+            f"{begin}: at {self.where} the local error is {self.error:.2g} times the allowed one; "
+            "allow more increments (INC=) or shorter ones, or ramp what acts at once"
+        )
+        self.state.notes.append(note)
+        warnings.warn(note, stacklevel=2)
 
     def rescue(self, failed: Attempt, end: str) -> Attempt | None:
         """The increment by relaxation, where contact stops it and none shorter may be tried."""
@@ -268,7 +290,10 @@ class DynamicStepper(NewtonStepper):
         control.accept(target, outcome.iterations)
         if not step.fixed_increments:
             grown = AIM * dt * math.sqrt(1.0 / max(self.error, 1e-6))
-            control.size = min(max(grown, LEAST * size), MOST * size, step.largest_increment)
+            size = max(min(max(grown, LEAST * size), MOST * size), self._shortest)
+            control.size = min(size, step.largest_increment)
+            if self.error > 1.0 and not system.opens:
+                self._note_error()
         scalars = {
             "dt": dt,
             "iterations": float(outcome.iterations),

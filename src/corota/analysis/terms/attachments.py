@@ -53,21 +53,33 @@ class Attachments:
     def _ground(self, system: System) -> None:
         self.ground = np.zeros(system.n_dofs)
         for item in system.model.dashpots:
-            if item.second is None:
+            if item.second is None and item.dofs is None:
                 nodes = np.array([item.first], np.int64)
                 for dof, value in enumerate(item.to_ground):
                     if value:
                         self.ground[system.attached_dofs(nodes, dof, "dashpot")] += value
 
     def _pairs(self, system: System) -> None:
-        pairs = [d for d in system.model.dashpots if d.second is not None]
-        ends = np.array([[d.first, d.second] for d in pairs], np.int64).reshape(-1, 2)
+        pairs = [d for d in system.model.dashpots if d.second is not None or d.dofs is not None]
         self.c = np.array([d.c for d in pairs])
-        self.nodes = ends
+        #: Those whose force is not in proportion to the velocity, by index.
+        self.tables = [(k, d) for k, d in enumerate(pairs) if d.table]
+        ends = [[d.first, d.first if d.second is None else d.second] for d in pairs]
+        self.nodes = np.array(ends, np.int64).reshape(-1, 2)
         self.dofs = flat = np.zeros((len(pairs), 4), np.int64)
-        if pairs:
-            for column, (e, i) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
-                flat[:, column] = system.attached_dofs(ends[:, e], i, "dashpot")
+        #: Fixed directions; zero along the line of the nodes.
+        self.fixed = np.zeros((len(pairs), 4))
+        for k, item in enumerate(pairs):
+            if item.dofs is None:
+                for column, (e, i) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
+                    flat[k, column] = system.attached_dofs(self.nodes[k, e : e + 1], i, "dashpot")[
+                        0
+                    ]
+                continue
+            for e, dof in enumerate(item.dofs[: 1 if item.second is None else 2]):
+                flat[k, 2 * e :] = system.attached_dofs(self.nodes[k, e : e + 1], dof, "dashpot")[0]
+                self.fixed[k, 2 * e] = 1.0 - 2.0 * e
+        self.along = ~self.fixed.any(axis=1)
         rows, columns = np.indices((4, 4)).reshape(2, -1)
         self.pair = (rows, columns)
         self.triplets = (flat[:, rows].ravel(), flat[:, columns].ravel())
@@ -102,18 +114,24 @@ class Attachments:
             return system.at_nodes(force), None
         axis = self._axes(u)
         rate = np.einsum("ki,ki->k", axis, v[self.dofs])
-        np.add.at(force, self.dofs, (self.c * rate)[:, None] * axis)
+        push, slope = self.c * rate, self.c.copy()
+        for k, item in self.tables:
+            push[k], slope[k] = item.response(rate[k])
+        np.add.at(force, self.dofs, push[:, None] * axis)
         rows, columns = self.pair
-        outer = weight * self.c[:, None] * axis[:, rows] * axis[:, columns]
+        outer = weight * slope[:, None] * axis[:, rows] * axis[:, columns]
         return system.at_nodes(force), (*self.triplets, outer.ravel())
 
     def _axes(self, u: Floats) -> Floats:
         """Directions of the dashpots, minus at the first end; shape (n, 4)."""
         points = self.system.model.mesh.points
-        moved = u[self.dofs] if self.system.nlgeom else np.zeros_like(u[self.dofs])
-        line = points[self.nodes[:, 1]] + moved[:, 2:] - points[self.nodes[:, 0]] - moved[:, :2]
+        axes, k = self.fixed.copy(), self.along
+        dofs, nodes = self.dofs[k], self.nodes[k]
+        moved = u[dofs] if self.system.nlgeom else np.zeros_like(u[dofs])
+        line = points[nodes[:, 1]] + moved[:, 2:] - points[nodes[:, 0]] - moved[:, :2]
         line /= np.linalg.norm(line, axis=1)[:, None]
-        return np.hstack([-line, line])
+        axes[k] = np.hstack([-line, line])
+        return axes
 
     def momenta(self, u: Floats, v: Floats) -> Floats:
         """Kinetic energy, linear and angular momentum, mass of the point masses, shape (5,)."""

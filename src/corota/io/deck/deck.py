@@ -13,6 +13,8 @@ from corota.errors import Diagnostic, Location
 from corota.io.deck import numerals
 from corota.io.deck.drafts import (
     AttachedDraft,
+    BehaviorDraft,
+    ConnectorDraft,
     Draft,
     EmbeddedDraft,
     GeneralDraft,
@@ -103,6 +105,12 @@ class Deck:
     initial: list[InitialDraft] = field(default_factory=list)
     ties: list[TieDraft] = field(default_factory=list)
     attached: list[AttachedDraft] = field(default_factory=list)
+    #: Read the values of attached elements, when all elements are known.
+    properties: list[Callable[[], None]] = field(default_factory=list)
+    connectors: list[ConnectorDraft] = field(default_factory=list)
+    #: ``*CONNECTOR BEHAVIOR`` by name, and the last one.
+    behaviors: dict[str, BehaviorDraft] = field(default_factory=dict)
+    behavior: BehaviorDraft | None = None
     #: Index in the model's point masses by the number of the attached element, from 0.
     masses: dict[int, int] = field(default_factory=dict)
     rotation_nodes: dict[str, str] = field(default_factory=dict)

@@ -321,8 +321,15 @@ class AttachedDraft:
         For each element its nodes, not yet looked up.
     labels : list of int
         Numbers of the elements.
+    numbers : list of list of int
+        The same nodes by number, as in an :class:`ElementBlock`.
     value : tuple of float
-        Empty until the card with the numbers is read: mass, damping, or clearance and direction.
+        Empty until the card with the numbers is read: mass, damping with its dofs, or clearance and
+        direction.
+    table : tuple of (float, float)
+        Velocities and forces of a nonlinear dashpot.
+    scope : Scope
+        Where the card stands.
     """
 
     type: str
@@ -330,7 +337,36 @@ class AttachedDraft:
     card: Card
     nodes: list[list[Draft]] = field(default_factory=list)
     labels: list[int] = field(default_factory=list)
+    numbers: list[list[int]] = field(default_factory=list)
     value: tuple[float, ...] = ()
+    table: tuple[tuple[float, float], ...] = ()
+    scope: Scope = field(default_factory=lambda: Scope())
+    connector: ConnectorDraft | None = None
+
+
+@dataclass(eq=False, repr=False)
+class ConnectorDraft:
+    """One ``*CONNECTOR SECTION``: what it connects, its behavior, and angle of its directions."""
+
+    card: Card
+    rows: list[Row]
+    kinds: tuple[str, ...] = ()
+    behavior: BehaviorDraft | None = None
+    angle: float = 0.0
+
+
+@dataclass(eq=False, repr=False)
+class BehaviorDraft:
+    """One ``*CONNECTOR BEHAVIOR``: cards and lines by component (1, 2, 6).
+
+    ``rigid`` are the locked components.
+    """
+
+    name: str
+    card: Card
+    elastic: dict[int, tuple[Card, list[Row]]] = field(default_factory=dict)
+    damped: dict[int, tuple[Card, list[Row]]] = field(default_factory=dict)
+    rigid: set[int] = field(default_factory=set)
 
 
 @dataclass(eq=False, repr=False)
@@ -532,6 +568,8 @@ class TieDraft:
 
 __all__ = [
     "AttachedDraft",
+    "BehaviorDraft",
+    "ConnectorDraft",
     "Draft",
     "ElementBlock",
     "EmbeddedDraft",

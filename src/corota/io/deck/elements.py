@@ -133,7 +133,15 @@ DRILLING = tuple(name for name in OWN if elements.find(name).drilling)
 LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3, "T2D2H": 2, "T3D2H": 2, "R2D2": 2}
 
 #: Point masses, rotary inertias, dashpots and gaps, with their number of nodes.
-ATTACHED = {"MASS": 1, "ROTARYI": 1, "DASHPOTA": 2, "DASHPOT1": 1, "GAPUNI": 2, "CONN2D2": 2}
+ATTACHED = {
+    "MASS": 1,
+    "ROTARYI": 1,
+    "DASHPOTA": 2,
+    "DASHPOT1": 1,
+    "DASHPOT2": 2,
+    "GAPUNI": 2,
+    "CONN2D2": 2,
+}
 
 
 @dataclass(frozen=True)
@@ -164,7 +172,6 @@ UNSUPPORTED_ELEMENTS: dict[str, str] = {
     **dict.fromkeys(
         ("GAPCYL", "GAPSPHER"), "of gaps this version has GAPUNI; use that or *CONTACT PAIR"
     ),
-    "DASHPOT2": "of dashpots this version has DASHPOTA, and DASHPOT1 to the ground",
 }
 
 #: Families of elements by the beginning of their names, and what to do instead.

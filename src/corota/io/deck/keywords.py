@@ -226,9 +226,26 @@ _TABLE: dict[str, Keyword] = {
     "NONSTRUCTURAL MASS": Keyword(
         card("material.nonstructural_mass"), "ELSET UNITS DISTRIBUTION", place="model"
     ),
-    "DASHPOT": Keyword(card("attachments.dashpot"), "ELSET", place="model"),
+    "DASHPOT": Keyword(
+        card("attachments.dashpot"), "ELSET NONLINEAR", "RTOL REGULARIZE", place="model"
+    ),
     "CONNECTOR SECTION": Keyword(
-        card("attachments.connector_section"), "ELSET", "CONTROLS", place="model"
+        card("connectors.connector_section"), "ELSET BEHAVIOR", "CONTROLS", place="model"
+    ),
+    "CONNECTOR BEHAVIOR": Keyword(
+        card("connectors.connector_behavior"), "NAME", "INTEGRATION EXTRAPOLATION", place="model"
+    ),
+    "CONNECTOR ELASTICITY": Keyword(
+        card("connectors.connector_elasticity"),
+        "COMPONENT NONLINEAR RIGID",
+        "REGULARIZE RTOL EXTRAPOLATION",
+        place="model",
+    ),
+    "CONNECTOR DAMPING": Keyword(
+        card("connectors.connector_damping"),
+        "COMPONENT NONLINEAR",
+        "TYPE REGULARIZE RTOL EXTRAPOLATION",
+        place="model",
     ),
     "RELEASE": Keyword(card("release.release"), place="model"),
     "GAP": Keyword(card("attachments.gap"), "ELSET", place="model"),

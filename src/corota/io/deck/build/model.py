@@ -39,6 +39,7 @@ build_initial = lazy("corota.io.deck.cards.thermal:build_initial")
 build_tie = lazy("corota.io.deck.build.ties:build_tie")
 harden = lazy("corota.io.deck.cards.hardening:harden")
 scale_masses = lazy("corota.io.deck.build.mass_scaling:scale_masses")
+prepare_connectors = lazy("corota.io.deck.cards.connectors:prepare_connectors")
 pretension_builder = lazy("corota.io.deck.build.pretension:PretensionBuilder")
 
 
@@ -49,6 +50,8 @@ class ModelBuilder:
         self.deck = deck
         if deck.releases:
             add_releases(deck)
+        if deck.connectors:
+            prepare_connectors(deck)
         self.meshes = MeshBuilder(deck)
         self.model = Model(self.meshes.build(), name)
         self.mesh = self.model.mesh

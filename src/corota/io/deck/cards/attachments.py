@@ -13,8 +13,8 @@ from corota.io.deck.deck import nearest
 from corota.io.deck.drafts import AttachedDraft, Draft
 from corota.io.deck.elements import ATTACHED
 from corota.io.deck.lexer import key
+from corota.lazy import lazy
 from corota.model.attachments import Dashpot, PointMass
-from corota.model.constraints import Coupling, Equation
 from corota.model.contact import gap_element
 
 if TYPE_CHECKING:
@@ -22,12 +22,15 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.errors import Location
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
+    from corota.io.deck.lexer import Card, Row
     from corota.mesh.data import Ints
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]
+
+connect = lazy("corota.io.deck.cards.connectors:connect")
 
 #: The card that gives the value of each.
 CARDS = {
@@ -35,79 +38,116 @@ CARDS = {
     "ROTARYI": "ROTARY INERTIA",
     "DASHPOTA": "DASHPOT",
     "DASHPOT1": "DASHPOT",
+    "DASHPOT2": "DASHPOT",
     "GAPUNI": "GAP",
-    "CONN2D2": "CONNECTOR SECTION",
-}
-#: Connections of two nodes in the plane, and the dofs that they share; BEAM is rigid.
-CONNECTIONS = {"JOIN": (0, 1), "HINGE": (0, 1), "WELD": (0, 1, 2), "BEAM": ()}
-_OTHERS = {
-    "LINK": "use a truss (T2D2) of a stiff material",
-    "AXIAL": "use SPRINGA with *SPRING, DASHPOTA with *DASHPOT",
-    "CARTESIAN": "use SPRING2 with *SPRING",
-    "SLOT": "use *MPC, SLIDER",
-    "TRANSLATOR": "use *MPC, SLIDER",
 }
 
 
 def elements(deck: Deck, card: Card, type_: str) -> None:
-    """``*ELEMENT, TYPE=`` one of :data:`CARDS`: label, nodes.
+    """``*ELEMENT, TYPE=`` one of :data:`ATTACHED`: label, nodes.
 
-    The set names them.
+    The set names them. A connector without its first node goes to the ground.
     """
     name = deck.required(card, "ELSET")
-    draft = AttachedDraft(type_, name, card)
+    draft = AttachedDraft(type_, name, card, scope=deck.scope)
     count = ATTACHED[type_]
     for row in card.rows():
         deck.extra_fields(card, row, count + 1)
+        ground = type_ == "CONN2D2" and row.get(1) in ("", "0")
+        ends = [*range(2 if ground else 1, count + 1)]
         numbers = [deck.integer(card, row, 0, "the element number")]
-        numbers += [deck.node(card, row, i, f"node {i}") for i in range(1, count + 1)]
+        numbers += [deck.node(card, row, i, f"node {i}") for i in ends]
         if None in numbers:
             continue
-        if len({row.get(i) for i in range(1, count + 1)}) < count:
+        if len({row.get(i) for i in ends}) < len(ends):
             deck.row_error(card, row, 2, f"node {numbers[1]} occurs twice")
             continue
         draft.labels.append(int(numbers[0] or 0))
-        draft.nodes.append([Draft("node", card, row, row.get(i), ()) for i in range(1, count + 1)])
+        draft.numbers.append([int(n or 0) for n in numbers[1:]])
+        draft.nodes.append([Draft("node", card, row, row.get(i), ()) for i in ends])
     if name:
         deck.attached.append(draft)
 
 
 def mass(deck: Deck, card: Card) -> None:
     """``*MASS, ELSET=``: the mass at each node of the set."""
-    _value(deck, card, "MASS", "the mass")
+    _later(deck, card, lambda rows: _value(deck, card, rows, "MASS", "the mass"))
 
 
 def rotary_inertia(deck: Deck, card: Card) -> None:
     """``*ROTARY INERTIA, ELSET=``: I11, I22 and that about the normal of the plane, I33."""
-    _value(deck, card, "ROTARYI", "the inertia about the normal of the plane", 2)
+    what = "the inertia about the normal of the plane"
+    _later(deck, card, lambda rows: _value(deck, card, rows, "ROTARYI", what, 2))
 
 
 def dashpot(deck: Deck, card: Card) -> None:
-    """``*DASHPOT, ELSET=``: an empty line or, to the ground, the dof; then force per velocity."""
+    """``*DASHPOT, ELSET=[, NONLINEAR]``: an empty line or dofs; force per velocity, or a table."""
+    _later(deck, card, lambda rows: _dashpot(deck, card, rows))
+
+
+def _later(deck: Deck, card: Card, read: Callable[[list[Row]], None]) -> None:
+    """Read a card when all elements are known: CAE writes it before or behind them."""
+    rows = list(card.rows())
+    if deck.required(card, "ELSET"):
+        deck.properties.append(lambda: read(rows))
+
+
+def _dashpot(deck: Deck, card: Card, rows: list[Row]) -> None:
     name = key(card.value("ELSET"))
-    if not any(d.type == "DASHPOT1" and key(d.name) == name for d in deck.attached):
-        _value(deck, card, "DASHPOTA", "the damping")
+    type_ = next(
+        (d.type for d in deck.attached if d.type.startswith("DASHPOT") and key(d.name) == name),
+        "DASHPOTA",
+    )
+    dofs: list[int | None] = []
+    if type_ != "DASHPOTA":
+        if not rows:
+            deck.error(card, card.where, "two data lines are expected, the dofs and the damping")
+            return
+        count = 1 if type_ == "DASHPOT1" or not rows[0].get(1) else 2
+        dofs = [deck.integer(card, rows[0], i, "the degree of freedom") for i in range(count)]
+        for i, dof in enumerate(dofs):
+            if dof is not None and dof not in PLANAR:
+                deck.row_error(card, rows[0], i, f"expected 1, 2 or 6 (rotation), found {dof}")
+        rows = rows[1:]
+        if not all(dof in PLANAR for dof in dofs):
+            return
+    table = damping_rows(deck, card, rows)
+    if table is None:
         return
-    rows = list(card.rows())
-    if len(rows) != 2:
-        text = f"two data lines are expected, the dof and the damping, found {len(rows)}"
-        deck.error(card, card.where, text)
-        return
-    dof = deck.integer(card, rows[0], 0, "the degree of freedom")
-    value = deck.real(card, rows[1], 0, "the damping")
-    if dof is None or value is None:
-        return
-    if dof not in PLANAR:
-        deck.row_error(card, rows[0], 0, f"expected 1, 2 or 6 (rotation), found {dof}")
-    elif not value >= 0.0:
-        deck.row_error(card, rows[1], 0, f"the damping must be >= 0, not {value:g}")
-    else:
-        _assign(deck, card, "DASHPOT1", tuple(value * (i == PLANAR[dof]) for i in range(3)))
+    places = tuple(float(PLANAR[dof or 0]) for dof in dofs)
+    for draft in _assign(deck, card, type_, (table[0][1], *places)):
+        draft.table = table if card.has("NONLINEAR") else ()
 
 
-def _value(deck: Deck, card: Card, type_: str, what: str, place: int = 0) -> None:
-    name = deck.required(card, "ELSET")
-    rows = list(card.rows())
+def damping_rows(deck: Deck, card: Card, rows: list[Row]) -> tuple[tuple[float, float], ...] | None:
+    """Velocities and forces of ``NONLINEAR``, else 1 and the damping; ``None`` after an error."""
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: the damping")
+        return None
+    nonlinear = card.has("NONLINEAR")
+    names = ("the force", "the velocity") if nonlinear else ("the damping",)
+    pairs = []
+    for row in rows:
+        values = [deck.real(card, row, i, name) for i, name in enumerate(names)]
+        if None in values:
+            return None
+        pairs.append((float(values[1] or 0.0) if nonlinear else 1.0, float(values[0] or 0.0)))
+        if any(row.fields[len(names) :]):
+            text = f"the temperature or frequency {row.get(len(names))} is ignored"
+            deck.note(f"{row.where}: {text}")
+    if nonlinear:
+        return tuple(pairs)
+    if len(set(pairs)) > 1:
+        text = "one damping is expected, which depends on no temperature and no frequency"
+        deck.row_error(card, rows[1], 0, text)
+        return None
+    if not pairs[0][1] >= 0.0:
+        deck.row_error(card, rows[0], 0, f"the damping must be >= 0, not {pairs[0][1]:g}")
+        return None
+    return (pairs[0],)
+
+
+def _value(deck: Deck, card: Card, rows: list[Row], type_: str, what: str, place: int = 0) -> None:
     if not rows:
         deck.error(card, card.where, f"a data line is missing: {what}")
         return
@@ -117,7 +157,7 @@ def _value(deck: Deck, card: Card, type_: str, what: str, place: int = 0) -> Non
         return
     if rows[0].get(1) and not place:
         deck.note(f"{rows[0].where}: the temperature or frequency {rows[0].get(1)} is ignored")
-    if value is None or not name:
+    if value is None:
         return
     if not value >= 0.0:
         deck.row_error(card, rows[0], place, f"{what} must be >= 0, not {value:g}")
@@ -130,9 +170,10 @@ def gap(deck: Deck, card: Card) -> None:
 
     Without a direction it is that of the line through the nodes.
     """
-    rows = list(card.rows())
-    if not deck.required(card, "ELSET"):
-        return
+    _later(deck, card, lambda rows: _gap(deck, card, rows))
+
+
+def _gap(deck: Deck, card: Card, rows: list[Row]) -> None:
     if len(rows) != 1:
         deck.error(card, card.where, f"one data line is expected, found {len(rows)}")
         return
@@ -155,86 +196,36 @@ def gap(deck: Deck, card: Card) -> None:
     _assign(deck, card, "GAPUNI", (clearance, x, y))
 
 
-def connector_section(deck: Deck, card: Card) -> None:
-    """``*CONNECTOR SECTION, ELSET=``: JOIN, HINGE, WELD or BEAM."""
-    name, rows = deck.required(card, "ELSET"), list(card.rows())
-    if not rows:
-        deck.error(card, card.where, "a data line is missing: the kind of the connection")
-        return
-    kind, turns = key(rows[0].get(0)), key(rows[0].get(1))
-    if kind == "JOIN" and turns == "ALIGN":
-        kind, turns = "WELD", ""
-    if kind not in CONNECTIONS or turns not in ("", "REVOLUTE"):
-        said = rows[0].get(0) if kind not in CONNECTIONS else rows[0].get(1)
-        hint = f"there are {', '.join(CONNECTIONS)} and JOIN, ALIGN"
-        text = f"connection {said!r} is not part of this version"
-        deck.row_error(card, rows[0], 0, text, _OTHERS.get(kind, hint))
-    if name:
-        place = list(CONNECTIONS).index(kind) if kind in CONNECTIONS else -1
-        _assign(deck, card, "CONN2D2", (float(place),))
-
-
-def _connect(
-    deck: Deck,
-    model: Model,
-    draft: AttachedDraft,
-    nodes: list[int],
-    find: Find,
-    rotating: NDArray[np.bool_],
-) -> None:
-    """Constraints of one connector."""
-    if draft.value[0] < 0.0:
-        return  # the kind is refused already
-    kind, where = list(CONNECTIONS)[int(draft.value[0])], draft.card.where
-    first, second = nodes
-    drafts = [*deck.supports, *(d for step in deck.steps for d in step.supports)]
-    held = (find(d) for d in drafts)
-    if any(n is not None and first in model.mesh.node_indices(n) for n in held):
-        first, second = second, first  # a node that supports hold leads
-    if kind == "BEAM":
-        model.constraints.append(Coupling(np.array([first]), second, where=where))
-        rotating[second] = True
-        return
-    if kind == "WELD" and rotating[nodes].any():
-        rotating[nodes] = True
-    away = float(np.hypot(*(model.mesh.points[second] - model.mesh.points[first])))
-    if away > 1e-6 * float(np.ptp(model.mesh.points, axis=0).max()):
-        labels = model.mesh.node_labels[nodes]
-        deck.error(
-            draft.card,
-            where,
-            f"nodes {labels[0]} and {labels[1]} of a connection {kind} are {away:g} apart",
-            hint="give them one place, or use BEAM",
-        )
-        return
-    for dof in CONNECTIONS[kind]:
-        if dof < 2 or rotating[nodes].all():
-            terms = [(first, dof, 1.0), (second, dof, -1.0)]
-            model.constraints.append(Equation(terms, 0.0, where))
-
-
-def _assign(deck: Deck, card: Card, type_: str, value: tuple[float, ...]) -> None:
+def _assign(deck: Deck, card: Card, type_: str, value: tuple[float, ...]) -> list[AttachedDraft]:
+    """Give the elements of a set their value; returns them."""
     name = card.value("ELSET")
     mine = [d for d in deck.attached if d.type == type_ and key(d.name) == key(name)]
     for draft in mine:
         if draft.value:
             deck.error(card, card.at("ELSET"), f"{name} already has its value")
-            return
+            return []
         draft.value = value
     if not mine:
         names = [d.name for d in deck.attached if d.type == type_]
         deck.error(
             card,
             card.at("ELSET"),
-            f"no *ELEMENT, TYPE={type_} with the set {name!r} before this card",
+            f"no *ELEMENT, TYPE={type_} with the set {name!r}",
             hint=nearest(name, names),
         )
+    return mine
 
 
 def build_attachments(deck: Deck, model: Model, find: Find, rotating: NDArray[np.bool_]) -> None:
     """Add the deck's point masses, dashpots, connectors and gaps to the model."""
+    for read in deck.properties:
+        read()
     number = -1
     for draft in deck.attached:
+        if draft.type == "CONN2D2":
+            number += len(draft.labels)
+            connect(deck, model, draft, find, rotating)
+            continue
         if not draft.value:
             deck.error(
                 draft.card,
@@ -254,13 +245,8 @@ def build_attachments(deck: Deck, model: Model, find: Find, rotating: NDArray[np
                 (value,), turns = draft.value, draft.type == "ROTARYI"
                 mass, inertia = (0.0, value) if turns else (value, 0.0)
                 model.point_masses.append(PointMass(np.array(nodes), mass, inertia, where))
-            elif draft.type == "CONN2D2":
-                _connect(deck, model, draft, nodes, find, rotating)
-            elif draft.type == "DASHPOT1":
-                x, y, turn = draft.value
-                model.dashpots.append(Dashpot(nodes[0], to_ground=(x, y, turn), where=where))
-            elif draft.type == "DASHPOTA":
-                model.dashpots.append(Dashpot(nodes[0], nodes[1], draft.value[0], where=where))
+            elif draft.type.startswith("DASHPOT"):
+                add_dashpot(deck, model, draft.card, where, nodes, draft.value, draft.table)
             else:
                 points, (clearance, x, y) = model.mesh.points, draft.value
                 direction = (x, y) if x or y else tuple(points[nodes[1]] - points[nodes[0]])
@@ -273,10 +259,37 @@ def build_attachments(deck: Deck, model: Model, find: Find, rotating: NDArray[np
                 model.contacts.append(found_gap)
 
 
+def add_dashpot(
+    deck: Deck,
+    model: Model,
+    card: Card,
+    where: Location | None,
+    nodes: list[int],
+    value: tuple[float, ...],
+    table: tuple[tuple[float, float], ...],
+) -> None:
+    """Add a dashpot at one node or two: its damping and, unless along the line, its dofs."""
+    c, *places = value
+    dofs = (int(places[0]), int(places[-1])) if places else None
+    second = nodes[1] if len(nodes) > 1 else None
+    try:
+        if second is None and not table and dofs is not None:
+            x, y, turn = (c * (i == dofs[0]) for i in range(3))
+            item = Dashpot(nodes[0], to_ground=(x, y, turn), where=where)
+        else:
+            item = Dashpot(
+                nodes[0], second, 0.0 if table else c, dofs=dofs, table=table, where=where
+            )
+        model.dashpots.append(item)
+    except InputError as error:
+        deck.error(card, where, error.message)
+
+
 __all__ = [
     "AttachedDraft",
+    "add_dashpot",
     "build_attachments",
-    "connector_section",
+    "damping_rows",
     "dashpot",
     "elements",
     "gap",

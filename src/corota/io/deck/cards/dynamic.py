@@ -114,8 +114,9 @@ def dynamic(deck: Deck, card: Card) -> None:
         if quasi_static
         else scheme,
         **({"rho_inf": 0.0} if quasi_static else {}),
-        # Without the residual at the half increment only the iterations limit the increments.
-        **({"error_tolerance": ANY_ERROR} if card.has("NOHAF") else {}),
+        # Without the residual at the half increment, which QUASI-STATIC has not either, only the
+        # iterations limit the increments.
+        **({"error_tolerance": ANY_ERROR} if card.has("NOHAF") or quasi_static else {}),
         "mass": "lumped" if explicit else "consistent",
         # Loads act at once unless they have an amplitude.
         "ramp": _grows(now) or (quasi_static and not now.card.has("AMPLITUDE")),

@@ -75,7 +75,7 @@ def _hinge(deck: Deck, draft: ReleaseDraft, block: ElementBlock, row: int) -> No
     scope, card = draft.scope, draft.card
     old = int(block.nodes[row, draft.end])
     new = 1 + max(int(b.labels.max(initial=0)) for b in scope.nodes)
-    point = _point(scope, old)
+    point = point_of(scope, old)
     if point is None:
         return  # its element is reported
     block.nodes[row, draft.end] = new
@@ -88,7 +88,8 @@ def _hinge(deck: Deck, draft: ReleaseDraft, block: ElementBlock, row: int) -> No
     deck.ties.append(tie)
 
 
-def _point(scope: Scope, label: int) -> Floats | None:
+def point_of(scope: Scope, label: int) -> Floats | None:
+    """Coordinates of a node, shape (1, 3); ``None`` where the scope has none with this number."""
     for block in scope.nodes:
         found = np.flatnonzero(block.labels == label)
         if len(found):

@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 
 from corota.io.deck.drafts import Draft, TieDraft
 from corota.io.deck.lexer import key
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card, Row
+
+link = lazy("corota.io.deck.cards.connectors:link")
 
 #: Degrees of freedom of decks in the plane, and their index here.
 PLANAR = {1: 0, 2: 1, 6: 2}
@@ -218,8 +221,8 @@ def _kind(deck: Deck, card: Card, kind: str) -> None:
 def mpc(deck: Deck, card: Card) -> None:
     """``*MPC``: ``BEAM``, ``PIN`` or ``TIE`` with two nodes or sets, ``STRAIGHT`` with many.
 
-    ``LINEAR`` is a node between two others, ``SLIDER`` a line whose ends come last. ``PLANE`` holds
-    by itself. Rows that begin with a node continue the one before.
+    ``LINK`` keeps a distance, ``LINEAR`` is a node between two others, ``SLIDER`` a line whose
+    ends come last. ``PLANE`` holds by itself. Rows that begin with a node continue the one before.
     """
     line: TieDraft | None = None
     for row in card.rows():
@@ -243,6 +246,9 @@ def mpc(deck: Deck, card: Card) -> None:
         if type_ == "PLANE":
             deck.note(f"{row.where}: the nodes of a planar model lie in a plane: *MPC, PLANE holds")
             continue
+        if type_ == "LINK":
+            link(deck, card, row)
+            continue
         if type_ == "LINEAR":
             deck.extra_fields(card, row, 4)
             between = TieDraft("between", card, row.where, ready=True)
@@ -255,8 +261,8 @@ def mpc(deck: Deck, card: Card) -> None:
                 row,
                 0,
                 f"MPC type {row.get(0)!r} is not supported",
-                "BEAM, PIN, TIE, LINEAR, STRAIGHT, SLIDER, PLANE are; or write *EQUATION, *RIGID "
-                "BODY or *COUPLING",
+                "BEAM, PIN, TIE, LINK, LINEAR, STRAIGHT, SLIDER, PLANE are; or write *EQUATION, "
+                "*RIGID BODY or *COUPLING",
             )
             continue
         deck.extra_fields(card, row, 3)

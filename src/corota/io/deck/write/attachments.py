@@ -15,6 +15,7 @@ from corota.model.steps import Dynamic, Frequency, Step
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from corota.model.attachments import Dashpot
     from corota.model.loads import InitialVelocity
     from corota.model.materials import Material
 
@@ -62,13 +63,7 @@ def material_damping(material: Material) -> str:
 
 
 def attachment_cards(writer: Writer) -> Iterator[str]:
-    """Point masses, dashpots and gaps: separate elements with a card for the value.
-
-    Raises
-    ------
-    UnsupportedError
-        If a dashpot goes to the ground.
-    """
+    """Point masses, dashpots and gaps: separate elements with a card for the value."""
     mesh, model = writer.mesh, writer.model
     label = int(mesh.cell_labels.max(initial=0))
     for count, mass in enumerate(model.point_masses, start=1):
@@ -81,16 +76,18 @@ def attachment_cards(writer: Writer) -> Iterator[str]:
                 label += 1
                 yield f"{label}, {node}\n"
             yield f"*{card}, ELSET={type_}{count}\n{value}\n"
-    for count, dashpot in enumerate(model.dashpots, start=1):
-        if dashpot.second is None:
-            raise UnsupportedError(
-                "a dashpot to the ground cannot be written to a deck: put a node with supports "
-                "at its other end, or keep the model in Python"
-            )
-        label += 1
-        first, second = mesh.node_labels[[dashpot.first, dashpot.second]].tolist()
-        yield f"*ELEMENT, TYPE=DASHPOTA, ELSET=DASHPOT{count}\n{label}, {first}, {second}\n"
-        yield f"*DASHPOT, ELSET=DASHPOT{count}\n\n{number(dashpot.c)}\n"
+    count = 0
+    for dashpot in model.dashpots:
+        for dofs, c in dampers(dashpot):
+            count, label = count + 1, label + 1
+            ends = [dashpot.first] if dashpot.second is None else [dashpot.first, dashpot.second]
+            type_ = "DASHPOTA" if not dofs else f"DASHPOT{len(ends)}"
+            nodes = ", ".join(map(str, mesh.node_labels[ends].tolist()))
+            yield f"*ELEMENT, TYPE={type_}, ELSET=DASHPOT{count}\n{label}, {nodes}\n"
+            option = ", NONLINEAR" if dashpot.table else ""
+            rows = [numbers([f, v]) for v, f in dashpot.table] or [number(c)]
+            places = ", ".join(str(DOFS[d]) for d in dofs[: len(ends)])
+            yield f"*DASHPOT, ELSET=DASHPOT{count}{option}\n{places}\n" + "\n".join(rows) + "\n"
     gaps = [p for p in model.contacts if is_gap(p)]
     for count, pair in enumerate(gaps, start=1):
         label += 1
@@ -98,6 +95,13 @@ def attachment_cards(writer: Writer) -> Iterator[str]:
         first, second = mesh.node_labels[list(nodes)].tolist()
         yield f"*ELEMENT, TYPE=GAPUNI, ELSET=GAP{count}\n{label}, {first}, {second}\n"
         yield f"*GAP, ELSET=GAP{count}\n{numbers([clearance, *direction])}\n"
+
+
+def dampers(dashpot: Dashpot) -> list[tuple[tuple[int, ...], float]]:
+    """Elements of a dashpot: dofs at its ends, none along the line, and damping of each."""
+    if dashpot.second is None and dashpot.dofs is None:
+        return [((dof,), c) for dof, c in enumerate(dashpot.to_ground) if c]
+    return [(dashpot.dofs or (), dashpot.c)]
 
 
 def velocity_cards(writer: Writer, steps: Sequence[Step]) -> Iterator[str]:
@@ -146,4 +150,4 @@ def _spin(writer: Writer, item: InitialVelocity) -> Iterator[str]:
             yield f"{label}, {dof}, {numbers([value])}\n"
 
 
-__all__ = ["attachment_cards", "damping_card", "model_damping", "velocity_cards"]
+__all__ = ["attachment_cards", "dampers", "damping_card", "model_damping", "velocity_cards"]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from corota.errors import CorotaError, UnsupportedError
+from corota.io.deck.write.attachments import dampers
 from corota.io.deck.write.loads import edge_area
 from corota.io.deck.write.text import Writer
 from corota.mesh.parts import cells_of
@@ -131,7 +132,9 @@ def _model(model: Model) -> dict[str, Any]:
     )
     found["the constraints"] = _constraints(model)
     found["the stages"] = [_stage(mesh, stage) for stage in model.stages]
-    found["the dashpots"] = [(d.first, d.second, d.c) for d in model.dashpots]
+    found["the dashpots"] = [
+        (d.first, d.second, places, c, d.table) for d in model.dashpots for places, c in dampers(d)
+    ]
     found["the initial temperatures"] = _nodal(mesh, model.initial_temperatures)
     found["the initial stresses"] = dict(_stresses(model))
     found["the initial velocities"] = _velocities(model)

@@ -1,0 +1,511 @@
+"""Connectors of two nodes in the plane: what they join, springs and dampers in them."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.io.deck.cards.attachments import add_dashpot, damping_rows
+from corota.io.deck.cards.release import point_of
+from corota.io.deck.cards.tie import PLANAR
+from corota.io.deck.deck import nearest
+from corota.io.deck.drafts import (
+    AttachedDraft,
+    BehaviorDraft,
+    ConnectorDraft,
+    Draft,
+    ElementBlock,
+    Entry,
+    LineDraft,
+    NamedSet,
+    NodeBlock,
+    TieDraft,
+)
+from corota.io.deck.elements import LINE_ELEMENTS
+from corota.io.deck.lexer import Row, key
+from corota.model.constraints import Coupling, Equation
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.errors import Location
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.lexer import Card
+    from corota.mesh.data import Ints
+    from corota.model.model import Model
+
+    Find = Callable[[Draft], str | Ints | None]
+
+#: Components of the relative motion that a connection leaves free, of 1, 2 and 6. Others are
+#: joined, but those of LINK (the distance) and BEAM (all, at a distance).
+FREE: dict[str, tuple[int, ...]] = {
+    "JOIN": (6,),
+    "HINGE": (6,),
+    "WELD": (),
+    "BEAM": (),
+    "LINK": (6,),
+    "AXIAL": (1, 6),
+    "CARTESIAN": (1, 2, 6),
+    "SLOT": (1, 6),
+    "TRANSLATOR": (1,),
+    "ROTATION": (1, 2, 6),
+    "ALIGN": (1, 2),
+}
+#: Connections that need no second word, and pairs of words for one.
+PAIRS = {
+    ("JOIN", "ALIGN"): "WELD",
+    ("SLOT", "ALIGN"): "TRANSLATOR",
+    ("JOIN", "REVOLUTE"): "HINGE",
+    ("JOIN", "ROTATION"): "JOIN",
+    ("AXIAL", "ROTATION"): "AXIAL",
+    ("CARTESIAN", "ROTATION"): "CARTESIAN",
+    ("SLOT", "ROTATION"): "SLOT",
+    ("CARTESIAN", "ALIGN"): "CARTESIAN, ALIGN",
+    ("AXIAL", "ALIGN"): "AXIAL, ALIGN",
+}
+FREE |= {"CARTESIAN, ALIGN": (1, 2), "AXIAL, ALIGN": (1,)}
+#: Share of the size of the model within which two nodes are at one place.
+CLOSE = 1e-6
+
+
+def connector_section(deck: Deck, card: Card) -> None:
+    """``*CONNECTOR SECTION, ELSET=[, BEHAVIOR=]``: kinds; orientation of the first node."""
+    rows = list(card.rows())
+    if not deck.required(card, "ELSET"):
+        return
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: the kind of the connection")
+    else:
+        deck.connectors.append(ConnectorDraft(card, rows))
+
+
+def link(deck: Deck, card: Card, row: Row) -> None:
+    """``LINK`` of ``*MPC``: two nodes whose distance stays."""
+    deck.extra_fields(card, row, 3)
+    numbers = [deck.node(card, row, i, "the node") for i in (1, 2)]
+    if None in numbers:
+        return
+    draft = AttachedDraft("CONN2D2", "", card, scope=deck.scope)
+    draft.numbers.append([int(n or 0) for n in numbers])
+    draft.nodes.append([Draft("node", card, row, row.get(i), ()) for i in (1, 2)])
+    draft.connector = ConnectorDraft(card, [row], ("LINK",))
+    deck.attached.append(draft)
+    deck.connectors.append(draft.connector)
+
+
+def connector_behavior(deck: Deck, card: Card) -> None:
+    """``*CONNECTOR BEHAVIOR, NAME=``: opens a behavior."""
+    deck.no_rows(card)
+    name = deck.required(card, "NAME")
+    deck.behavior = BehaviorDraft(name, card)
+    if key(name) in deck.behaviors:
+        deck.error(card, card.at("NAME"), f"behavior {name} is already defined")
+    deck.behaviors[key(name)] = deck.behavior
+
+
+def connector_elasticity(deck: Deck, card: Card) -> None:
+    """``*CONNECTOR ELASTICITY, COMPONENT=[, NONLINEAR][, RIGID]``: stiffness, or force and way."""
+    rows, into = list(card.rows()), _behavior(deck, card)
+    if into is None:
+        return
+    if card.has("RIGID"):
+        component = _component(deck, card) if card.has("COMPONENT") else None
+        listed = [
+            deck.integer(card, row, i, "the component") for row in rows for i in range(len(row))
+        ]
+        chosen = [component] if component else [i for i in listed if i] or [1, 2, 6]
+        into.rigid |= {int(i) for i in chosen}
+        return
+    component = _component(deck, card)
+    if component is None:
+        return
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: the stiffness")
+    elif component in into.elastic:
+        deck.error(card, card.where, f"component {component} is elastic already")
+    else:
+        into.elastic[component] = (card, rows)
+
+
+def connector_damping(deck: Deck, card: Card) -> None:
+    """``*CONNECTOR DAMPING, COMPONENT=[, NONLINEAR]``: damping, or force and velocity."""
+    rows, into = list(card.rows()), _behavior(deck, card)
+    if into is None:
+        return
+    if key(card.value("TYPE")) not in ("", "VISCOUS"):
+        deck.error(card, card.at("TYPE"), "the damping of connectors is viscous")
+        return
+    component = _component(deck, card)
+    if component is not None:
+        into.damped[component] = (card, rows)
+
+
+def _behavior(deck: Deck, card: Card) -> BehaviorDraft | None:
+    if deck.behavior is None:
+        text = "the card belongs under a *CONNECTOR BEHAVIOR, but there is none before it"
+        deck.error(card, card.where, text)
+    return deck.behavior
+
+
+def _component(deck: Deck, card: Card) -> int | None:
+    if not card.has("COMPONENT"):
+        text = "COMPONENT= is missing: components that act on each other are not supported"
+        deck.error(card, card.where, text)
+        return None
+    component = deck.parameter_integer(card, "COMPONENT", 1, 1)
+    if component not in PLANAR:
+        text = f"expected component 1, 2 or 6 (rotation), found {component}"
+        deck.error(card, card.at("COMPONENT"), text)
+        return None
+    return component
+
+
+def prepare_connectors(deck: Deck) -> None:
+    """Give connectors their sections, springs and nodes, before the mesh is made."""
+    for section in deck.connectors:
+        if section.kinds:  # of *MPC
+            for draft in deck.attached:
+                if draft.connector is section:
+                    _pins(deck, draft, section)
+            continue
+        name = section.card.value("ELSET")
+        mine = [d for d in deck.attached if d.type == "CONN2D2" and key(d.name) == key(name)]
+        if not mine:
+            names = [d.name for d in deck.attached if d.type == "CONN2D2"]
+            text = f"no *ELEMENT, TYPE=CONN2D2 with the set {name!r}"
+            deck.error(section.card, section.card.at("ELSET"), text, hint=nearest(name, names))
+        for draft in mine:
+            if draft.connector is not None:
+                deck.error(
+                    section.card, section.card.at("ELSET"), f"{name} already has its section"
+                )
+                continue
+            draft.connector = section
+            if _read(deck, draft, section):
+                _springs(deck, draft, section)
+                _pins(deck, draft, section)
+
+
+def _read(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> bool:
+    """Fill in kind, behavior and angle of a section."""
+    card, row = section.card, section.rows[0]
+    words = tuple(key(word) for word in row.fields if word)
+    kind = PAIRS.get(words, words[0] if len(words) == 1 else "")  # type: ignore[call-overload]
+    if kind not in FREE:
+        hint = (
+            f"there are {', '.join(k for k in FREE if ',' not in k)}, some with ALIGN or ROTATION"
+        )
+        deck.row_error(
+            card, row, 0, f"connection {row.text.strip()!r} is not part of this version", hint
+        )
+        return False
+    section.kinds = (kind, *words[1:])
+    if len(section.rows) > 1 and section.rows[1].get(0):
+        name = section.rows[1].get(0)
+        scopes = (draft.scope, deck.root)
+        found = next(
+            (s.orientations[key(name)] for s in scopes if key(name) in s.orientations), None
+        )
+        if found is None:
+            deck.row_error(card, section.rows[1], 0, f"no orientation named {name!r}")
+            return False
+        section.angle = found
+    if card.has("BEHAVIOR"):
+        section.behavior = deck.behaviors.get(key(card.value("BEHAVIOR")))
+        if section.behavior is None:
+            text = f"no *CONNECTOR BEHAVIOR named {card.value('BEHAVIOR')!r}"
+            deck.error(card, card.at("BEHAVIOR"), text)
+            return False
+        given = {*section.behavior.elastic, *section.behavior.damped}
+        if kind in ("AXIAL", "AXIAL, ALIGN", "SLOT", "TRANSLATOR"):
+            given -= {6} if "ROTATION" in words else set()
+            allowed = {1}
+        elif kind in ("JOIN", "HINGE", "ROTATION"):
+            allowed = {6}
+        else:
+            allowed = {1, 2} | ({6} if "ROTATION" in words else set())
+        wrong = sorted(given - (allowed & {*FREE[kind]}))
+        if wrong:
+            text = f"component {wrong[0]} of a connection {kind} has no spring and no damper"
+            deck.error(section.behavior.card, section.behavior.card.where, text)
+            return False
+    return True
+
+
+def _directions(deck: Deck, section: ConnectorDraft, component: int) -> tuple[int, bool] | None:
+    """Dof (1, 2, 6) of a component, and whether it points the other way."""
+    if component == 6:
+        return 6, False
+    turned = section.angle / (0.5 * math.pi) + (component == 2)
+    quarter = round(turned)
+    if abs(turned - quarter) > 1e-6:
+        text = (
+            "springs and dampers of connectors act along x and y, not along an orientation between"
+        )
+        deck.error(section.card, section.card.where, text, hint="give AXIAL, or SPRINGA")
+        return None
+    return (1, 2)[quarter % 2], quarter % 4 in (2, 3)
+
+
+def _springs(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> None:
+    """Make a spring element of each elastic component."""
+    behavior = section.behavior
+    for component, (card, rows) in (behavior.elastic if behavior else {}).items():
+        along = section.kinds[0].startswith("AXIAL") and component == 1
+        type_, turned, lead = "SPRINGA", False, []
+        if not along:
+            found = _directions(deck, section, component)
+            if found is None:
+                return
+            type_, (dof, turned) = "SPRING2", found
+            text = f"{dof}, {dof}"
+            lead = [Row(rows[0].where, text, text.split(", "), [0, 3])]
+        for label, numbers, nodes in zip(draft.labels, draft.numbers, draft.nodes, strict=True):
+            if len(numbers) == 1 and along:
+                text = "AXIAL to the ground has no line: give it two nodes"
+                deck.row_error(draft.card, nodes[0].row, 1, text)
+                return
+            name = f"_CONNECTOR-{label}-{component}"
+            ends = numbers if along or turned else numbers[::-1]  # SPRING2 takes first less second
+            kind = "SPRING1" if len(numbers) == 1 else type_
+            own = 1 + max(
+                [*(int(b.labels.max(initial=0)) for b in draft.scope.elements), *draft.labels]
+            )
+            at = nodes[0].row.where
+            block = ElementBlock(
+                draft.card,
+                kind,
+                np.array([own], np.int64),
+                np.array([ends], np.int64),
+                at.file,
+                np.array([at.line], np.int64),
+            )
+            draft.scope.elements.append(block)
+            named = NamedSet(name, at, [Entry(at, block.labels)])
+            draft.scope.elsets[key(name)] = named
+            draft.scope.lines.append(LineDraft("spring", card, name, rows=[*lead, *rows]))
+
+
+def _pins(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> None:
+    """Give rigid links between two beams a node at their first end, about which they turn."""
+    locked = section.behavior.rigid if section.behavior else ()
+    if section.kinds[0] != "LINK" and not (section.kinds[0].startswith("AXIAL") and 1 in locked):
+        return
+    beams = [b for b in draft.scope.elements if b.type in LINE_ELEMENTS]
+    turning = np.concatenate([np.zeros(0, np.int64), *(b.nodes.ravel() for b in beams)])
+    for numbers, nodes in zip(draft.numbers, draft.nodes, strict=True):
+        point = point_of(draft.scope, numbers[0])
+        if not np.isin(numbers, turning).all() or point is None:
+            continue
+        own = 1 + max(int(b.labels.max(initial=0)) for b in draft.scope.nodes)
+        at = nodes[0].row.where
+        lines = np.array([at.line], np.int64)
+        draft.scope.nodes.append(NodeBlock(np.array([own], np.int64), point, at.file, lines))
+        pin = Draft("node", draft.card, nodes[0].row, str(own), (0.0,))
+        tie = TieDraft("same", draft.card, at, ready=True, dofs=(0, 1))
+        tie.target, tie.terms = pin, [nodes[0]]
+        deck.ties.append(tie)
+        nodes.append(pin)
+
+
+def connect(
+    deck: Deck, model: Model, draft: AttachedDraft, find: Find, rotating: NDArray[np.bool_]
+) -> None:
+    """Add constraints and dashpots of the connectors of a set to the model."""
+    section = draft.connector
+    if section is None:
+        text = f"no *CONNECTOR SECTION, ELSET={draft.name} says what these elements join"
+        deck.error(draft.card, draft.card.at("ELSET"), text)
+        return
+    for drafts in draft.nodes:
+        found = [find(d) for d in drafts]
+        nodes = [int(n[0]) for n in found if n is not None and not isinstance(n, str)]
+        if len(nodes) == len(drafts) and section.kinds:
+            one = _Connector(deck, model, section, drafts[0].row.where, nodes, rotating)
+            one.join(_held(deck, model, find))
+            one.damp()
+
+
+def _held(deck: Deck, model: Model, find: Find) -> Ints:
+    """Nodes with supports."""
+    drafts = [*deck.supports, *(d for step in deck.steps for d in step.supports)]
+    found = (find(d) for d in drafts)
+    parts = [model.mesh.node_indices(n) for n in found if n is not None]
+    return np.unique(np.concatenate([np.zeros(0, np.int64), *parts]))
+
+
+class _Connector:
+    """One connector in the model: its nodes, the pin of a link behind them."""
+
+    def __init__(
+        self,
+        deck: Deck,
+        model: Model,
+        section: ConnectorDraft,
+        where: Location,
+        nodes: list[int],
+        rotating: NDArray[np.bool_],
+    ) -> None:
+        self.deck, self.model, self.section, self.where = deck, model, section, where
+        self.nodes, self.rotating = nodes, rotating
+        self.kind = section.kinds[0]
+        points = model.mesh.points[nodes]
+        self.line = points[1] - points[0] if len(nodes) > 1 else np.zeros(2)
+        self.apart = float(np.hypot(*self.line)) > CLOSE * float(
+            np.ptp(model.mesh.points, axis=0).max()
+        )
+
+    def error(self, text: str, hint: str = "") -> None:
+        self.deck.error(self.section.card, self.where, text, hint=hint)
+
+    def join(self, held: Ints) -> None:
+        """Add the constraints."""
+        behavior, kind = self.section.behavior, self.kind
+        joined = {1, 2, 6} - {*FREE[kind]}
+        if behavior is not None:
+            joined |= behavior.rigid & {*FREE[kind]} & {*self._usable()}
+        if kind.startswith("AXIAL"):
+            joined -= {2}
+        if kind in ("ROTATION", "ALIGN"):
+            joined -= {1, 2}
+        if len(self.nodes) == 1:
+            if joined:
+                self.error(f"connection {kind} to the ground: hold the node by *BOUNDARY")
+            return
+        first, second = self.nodes[:2]
+        if first in held:
+            first, second = second, first  # a node that supports hold leads
+        if kind == "BEAM":
+            self._couple([first], second, (0, 1, 2))
+        elif kind == "LINK" or (kind.startswith("AXIAL") and 1 in joined):
+            self._link(held)
+        else:
+            self._equations(joined, first, second)
+        if kind.startswith("AXIAL") and 6 in joined:
+            self._equations({6}, first, second)
+
+    def _usable(self) -> tuple[int, ...]:
+        """Components that behavior may lock."""
+        if self.kind in ("JOIN", "HINGE", "LINK", "ROTATION"):
+            return (6,)
+        if self.kind.startswith("CARTESIAN"):
+            return (1, 2)
+        return (1,)
+
+    def _couple(self, nodes: list[int], reference: int, dofs: tuple[int, ...]) -> None:
+        self.model.constraints.append(
+            Coupling(np.array(nodes), reference, dofs=dofs, where=self.where)
+        )
+        self.rotating[reference] = True
+
+    def _link(self, held: Ints) -> None:
+        """A rigid bar that turns at both ends: its rotation is that of a node without another."""
+        if not self.apart:
+            self.error("the nodes of a LINK are at one place", "use JOIN")
+            return
+        first, second = self.nodes[:2]
+        pins = [(second, first), (first, second)]
+        if len(self.nodes) > 2:
+            pins.append((second, self.nodes[2]))
+        for node, reference in pins:
+            if not self.rotating[reference] and node not in held:
+                self._couple([node], reference, (0, 1))
+                return
+        self.error(
+            "a LINK between two nodes that turn, the second of them with supports",
+            "name the node with supports first",
+        )
+
+    def _equations(self, joined: set[int], first: int, second: int) -> None:
+        if self.kind in ("JOIN", "HINGE", "WELD") and self.apart:
+            labels = self.model.mesh.node_labels[self.nodes[:2]]
+            away = float(np.hypot(*self.line))
+            text = f"nodes {labels[0]} and {labels[1]} of a connection {self.kind}"
+            self.error(f"{text} are {away:g} apart", "give them one place, or use BEAM")
+            return
+        if self.kind == "WELD" and self.rotating[[first, second]].any():
+            self.rotating[[first, second]] = True
+        for component in sorted(joined):
+            if component == 6:
+                if self.rotating[[first, second]].all():
+                    self._equation([(first, 2, 1.0), (second, 2, -1.0)])
+                continue
+            angle = self.section.angle + (0.5 * math.pi if component == 2 else 0.0)
+            normal = np.array([np.cos(angle), np.sin(angle)])
+            normal[np.abs(normal) < 1e-12] = 0.0
+            lead = int(np.argmax(np.abs(normal)))
+            terms = [(first, lead, normal[lead]), (second, lead, -normal[lead])]
+            if normal[1 - lead]:
+                terms += [
+                    (first, 1 - lead, normal[1 - lead]),
+                    (second, 1 - lead, -normal[1 - lead]),
+                ]
+            begin = self.nodes[0]
+            if self.rotating[begin] and joined != {1, 2}:
+                self._turning(terms, normal, begin, first)
+            self._equation(terms)
+
+    def _turning(
+        self, terms: list[tuple[int, int, float]], normal: np.ndarray, begin: int, first: int
+    ) -> None:
+        """Let the direction turn with its first node, by small rotations."""
+        if any(step.nlgeom for step in self.deck.steps):
+            self.error(
+                f"the direction of a connection {self.kind} turns with node "
+                f"{self.model.mesh.node_labels[begin]} under NLGEOM",
+                "name a node without rotation first, or use *MPC, SLIDER",
+            )
+            return
+        # n . (x2 - x1) stays: n . (u2 - u1) + (rotation x n) . line = 0, less the first.
+        arm = float(normal[1] * self.line[0] - normal[0] * self.line[1])
+        if arm:
+            terms.append((begin, 2, arm if first == begin else -arm))
+
+    def _equation(self, terms: list[tuple[int, int, float]]) -> None:
+        self.model.constraints.append(Equation(terms, 0.0, self.where))
+
+    def damp(self) -> None:
+        """Add the dashpots; check what springs and they cannot follow."""
+        behavior = self.section.behavior
+        if behavior is None:
+            return
+        moving = {*behavior.elastic, *behavior.damped} & {1, 2}
+        if moving and not self.kind.startswith("AXIAL") and self.rotating[self.nodes[0]]:
+            large = any(step.nlgeom for step in self.deck.steps)
+            if (large or self.apart) and len(self.nodes) > 1:
+                self.error(
+                    f"the directions of a connection {self.kind} turn with node "
+                    f"{self.model.mesh.node_labels[self.nodes[0]]}",
+                    "name a node without rotation first, or use AXIAL",
+                )
+                return
+        for component, (card, rows) in behavior.damped.items():
+            table = damping_rows(self.deck, card, rows)
+            if table is None:
+                return
+            value: tuple[float, ...] = (table[0][1],)
+            nodes = self.nodes[:2]
+            if not (self.kind.startswith("AXIAL") and component == 1):
+                found = _directions(self.deck, self.section, component)
+                if found is None:
+                    return
+                value += (float(PLANAR[found[0]]),)
+                nodes = nodes if found[1] else nodes[::-1]  # its velocity is first less second
+            curve = table if card.has("NONLINEAR") else ()
+            add_dashpot(self.deck, self.model, card, self.where, nodes, value, curve)
+
+
+__all__ = [
+    "connect",
+    "connector_behavior",
+    "connector_damping",
+    "connector_elasticity",
+    "connector_section",
+    "link",
+    "prepare_connectors",
+]
