@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota.model.units import Units
 from corota.model.contact import RigidCurve
 from corota.model.single_point import LawOfTheCore
 
@@ -91,3 +92,30 @@ def test_an_amplitude_that_is_none_is_named() -> None:
     model.force("right", y=1.0, amplitude="up")
     with pytest.raises(ct.ModelError, match=r"'up' is no Amplitude but list: .*ct\.Amplitude"):
         ct.solve(model, ct.Static(), threads=1)
+
+
+def test_units_are_set_by_call_or_by_assignment() -> None:
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, 1, 1))
+    model.units = "mm"  # type: ignore[assignment, method-assign]
+    assert model.unit_system == Units.of("mm")
+    model.units = ("mm", "N", "t")  # type: ignore[assignment, method-assign]
+    assert model.unit_system == Units.of("mm", "N", "t")
+    model.units("m")
+    assert model.unit_system == Units.of("m")
+    with pytest.raises(ct.InputError, match="cubit"):
+        model.units = "cubit"  # type: ignore[assignment, method-assign]
+    with pytest.raises(AttributeError, match=r"call model\.fix"):
+        model.fix = 1.0  # type: ignore[assignment, method-assign]
+
+
+def test_a_direction_that_is_fixed_with_another_is_in_the_summary() -> None:
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, 1, 1))
+    model.section(element="Q4", material=ct.Elastic(1.0, 0.3))
+    model.fix("left")
+    model.fix("bottom", x=None, y=0.5)
+    model.steps.append(ct.Static())
+    model.steps[0].fix("right", x=1.0)
+    lines = model.summary().splitlines()
+    assert "  support left: x 0, y 0" in lines
+    assert "  support bottom: y 0.5" in lines
+    assert "  support right: x 1, y 0 (fixed as well: y=None leaves it free)" in lines

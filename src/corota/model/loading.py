@@ -74,7 +74,8 @@ class Loading:
             Node, edge or cell set, a list of them, node indices, or a mask of nodes.
         x, y : float or None
             Displacement at the end of a step [length]; both are 0 by default. ``x=0.0``
-            alone fixes y as well, with a warning: write ``y=None`` to leave it free.
+            alone fixes y as well, with a warning, as does ``x=1.0`` with a sentence in
+            :meth:`Model.summary`: write ``y=None`` to leave it free.
         rotation : float, bool or None
             ``True`` fixes the drilling rotation, a number prescribes it [rad]. Nodes of beams, of
             ``OPT``, ``Q4D`` and ``Q4DI``, and reference nodes have one; where no node of the
@@ -110,12 +111,13 @@ class Loading:
                     stacklevel=2,
                 )
         turn = 0.0 if rotation is True else None if rotation is False else rotation
+        one = (x is FIXED) != (y is FIXED)
         for where in places:
             for dof, value in enumerate((x, y, turn)):
                 if value is not None:
-                    self.supports.append(
-                        Fixed(where, dof, 0.0 if value is FIXED else value, amplitude)
-                    )
+                    implied = value is FIXED and one
+                    given = 0.0 if value is FIXED else value
+                    self.supports.append(Fixed(where, dof, given, amplitude, implied=implied))
 
     def force(
         self,

@@ -187,6 +187,8 @@ class Fixed(Brief):
         Name in ``Model.amplitudes``; empty: ramp in static steps.
     keep : bool
         Fix the nodes at their position at the start of the step, whatever `value` is.
+    implied : bool
+        Whether the method ``fix`` fixed this direction with the other one, which alone was given.
     """
 
     nodes: str | Ints
@@ -195,6 +197,7 @@ class Fixed(Brief):
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
     keep: bool = False
+    implied: bool = field(default=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         self.nodes = selected(self.nodes, "node", self.where)

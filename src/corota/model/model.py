@@ -156,6 +156,21 @@ class Model(Loading, LineSections, InitialFields, Stages):
         self.time_points: dict[str, NDArray[np.float64]] = {}
         self.unit_system = Units()
 
+    def __setattr__(self, name: str, value: object) -> None:
+        """Set an attribute; ``model.units = "mm"`` calls the method of that name.
+
+        Raises
+        ------
+        AttributeError
+            If it would hide another method.
+        """
+        if name == "units":
+            self.units(*((value,) if isinstance(value, str) else value))  # type: ignore[misc]
+        elif callable(getattr(type(self), name, None)):
+            raise AttributeError(f"{name} is a method of the model: call model.{name}(...)")
+        else:
+            super().__setattr__(name, value)
+
     def units(self, *names: str) -> None:
         """Name the units of the model, for axes, tables and files.
 

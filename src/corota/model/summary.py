@@ -140,7 +140,8 @@ def support_lines(model: Model, supports: Iterable[Fixed]) -> list[str]:
             where = label if len(nodes) == 1 else f"{len(nodes)} nodes from {label}"
         amplitude = f" by {support.amplitude}" if support.amplitude else ""
         direction = ("x", "y", "rotation")[support.dof]
-        found.setdefault(where, []).append(f"{direction} {support.value:g}{amplitude}")
+        implied = f" (fixed as well: {direction}=None leaves it free)" * support.implied
+        found.setdefault(where, []).append(f"{direction} {support.value:g}{amplitude}{implied}")
     lines = [f"  support {where}: {', '.join(what)}" for where, what in list(found.items())[:10]]
     return lines + ([f"  and {len(found) - 10} more supports"] if len(found) > 10 else [])
 
