@@ -179,7 +179,7 @@ BAD = [
     ("*MASS, ELSET=EM\n1.\n", "no *ELEMENT, TYPE=MASS with the set"),
     (MASS + "*MASS, ELSET=EM\n1.\n", "already has its value"),
     (DASH.replace("1, 3", "3, 3"), "node 3 occurs twice"),
-    (DASH.replace("4.,", "4.,\n5., 10."), "constant in time"),
+    (DASH.replace("4.,", "4.,\n5., 10."), "no temperature and no frequency"),
 ]
 
 

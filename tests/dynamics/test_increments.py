@@ -125,3 +125,17 @@ def test_increments_do_not_depend_on_the_axes(scheme, free):
     assert len({len(s) for s in sizes}) == 1
     for other in sizes[1:]:
         assert np.allclose(other, sizes[0], rtol=1e-6)
+
+
+def test_a_step_ends_with_the_increments_that_it_may_take():
+    """A stiff strip under a sudden force needs thousands: half of 20 are spent, then it says so."""
+    model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=4, ny=1))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e8, nu=0.0, rho=1.0))
+    model.fix("left")
+    model.force("right", y=1.0)
+    step = ct.Dynamic(period=1.0, first_increment=0.01, max_increments=20)
+    with pytest.warns(UserWarning, match="longer increments than the motion needs"):
+        results = ct.solve(model, step, fields=False, threads=1)
+    assert results.frames[-1].time == pytest.approx(1.0)
+    assert results.frames[-1].increment <= 20
+    assert any("longer increments" in note for note in results.notes)

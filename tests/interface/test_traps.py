@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.model.units import Units
 from corota.model.contact import RigidCurve
 from corota.model.single_point import LawOfTheCore
+from corota.model.units import Units
 
 
 def strip(element: str = "Q4I") -> ct.Model:

@@ -214,10 +214,13 @@ class DynamicStepper(NewtonStepper):
     def _shortest(self) -> float:
         """Increment below which the local error cuts no further [time].
 
-        That is the smallest one, and the mean of those that are left until the end of the step.
+        That is the smallest one and, when half of the increments are used, the mean of those that
+        are left until the end of the step.
         """
         step, control = self.step, self.control
         left = max(step.max_increments - control.number, 1)
+        if 2 * left > step.max_increments:
+            return step.smallest_increment
         return max(step.smallest_increment, (step.period - control.time) / left)
 
     def _note_error(self) -> None:

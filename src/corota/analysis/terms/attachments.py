@@ -125,7 +125,8 @@ class Attachments:
     def _axes(self, u: Floats) -> Floats:
         """Directions of the dashpots, minus at the first end; shape (n, 4)."""
         points = self.system.model.mesh.points
-        axes, k = self.fixed.copy(), self.along
+        axes: Floats = self.fixed.copy()
+        k = self.along
         dofs, nodes = self.dofs[k], self.nodes[k]
         moved = u[dofs] if self.system.nlgeom else np.zeros_like(u[dofs])
         line = points[nodes[:, 1]] + moved[:, 2:] - points[nodes[:, 0]] - moved[:, :2]

@@ -107,7 +107,7 @@ class ModelBuilder:
         model.amplitudes = {a.name: a for a in deck.amplitudes.values()}
         if pretension is not None:
             pretension.join(targets.nodes, targets.rotating)
-        if deck.attached:
+        if deck.attached or deck.properties:
             build_attachments(deck, model, targets.nodes, targets.rotating)
         model.supports += self.loads.supports(deck.supports)
         for item in deck.velocities:

@@ -57,7 +57,7 @@ FREE: dict[str, tuple[int, ...]] = {
     "ALIGN": (1, 2),
 }
 #: Connections that need no second word, and pairs of words for one.
-PAIRS = {
+PAIRS: dict[tuple[str, ...], str] = {
     ("JOIN", "ALIGN"): "WELD",
     ("SLOT", "ALIGN"): "TRANSLATOR",
     ("JOIN", "REVOLUTE"): "HINGE",
@@ -195,7 +195,7 @@ def _read(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> bool:
     """Fill in kind, behavior and angle of a section."""
     card, row = section.card, section.rows[0]
     words = tuple(key(word) for word in row.fields if word)
-    kind = PAIRS.get(words, words[0] if len(words) == 1 else "")  # type: ignore[call-overload]
+    kind = PAIRS.get(words, words[0] if len(words) == 1 else "")
     if kind not in FREE:
         hint = (
             f"there are {', '.join(k for k in FREE if ',' not in k)}, some with ALIGN or ROTATION"
@@ -297,10 +297,10 @@ def _pins(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> None:
     if section.kinds[0] != "LINK" and not (section.kinds[0].startswith("AXIAL") and 1 in locked):
         return
     beams = [b for b in draft.scope.elements if b.type in LINE_ELEMENTS]
-    turning = np.concatenate([np.zeros(0, np.int64), *(b.nodes.ravel() for b in beams)])
+    hinged = np.concatenate([np.zeros(0, np.int64), *(b.nodes.ravel() for b in beams)])
     for numbers, nodes in zip(draft.numbers, draft.nodes, strict=True):
         point = point_of(draft.scope, numbers[0])
-        if not np.isin(numbers, turning).all() or point is None:
+        if not np.isin(numbers, hinged).all() or point is None:
             continue
         own = 1 + max(int(b.labels.max(initial=0)) for b in draft.scope.nodes)
         at = nodes[0].row.where
@@ -447,10 +447,10 @@ class _Connector:
                 ]
             begin = self.nodes[0]
             if self.rotating[begin] and joined != {1, 2}:
-                self._turning(terms, normal, begin, first)
+                self._small_turn(terms, normal, begin, first)
             self._equation(terms)
 
-    def _turning(
+    def _small_turn(
         self, terms: list[tuple[int, int, float]], normal: np.ndarray, begin: int, first: int
     ) -> None:
         """Let the direction turn with its first node, by small rotations."""

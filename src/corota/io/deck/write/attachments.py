@@ -78,15 +78,15 @@ def attachment_cards(writer: Writer) -> Iterator[str]:
             yield f"*{card}, ELSET={type_}{count}\n{value}\n"
     count = 0
     for dashpot in model.dashpots:
-        for dofs, c in dampers(dashpot):
+        for along, c in dampers(dashpot):
             count, label = count + 1, label + 1
-            ends = [dashpot.first] if dashpot.second is None else [dashpot.first, dashpot.second]
-            type_ = "DASHPOTA" if not dofs else f"DASHPOT{len(ends)}"
-            nodes = ", ".join(map(str, mesh.node_labels[ends].tolist()))
-            yield f"*ELEMENT, TYPE={type_}, ELSET=DASHPOT{count}\n{label}, {nodes}\n"
+            both = [dashpot.first] if dashpot.second is None else [dashpot.first, dashpot.second]
+            type_ = "DASHPOTA" if not along else f"DASHPOT{len(both)}"
+            ends = ", ".join(map(str, mesh.node_labels[both].tolist()))
+            yield f"*ELEMENT, TYPE={type_}, ELSET=DASHPOT{count}\n{label}, {ends}\n"
             option = ", NONLINEAR" if dashpot.table else ""
             rows = [numbers([f, v]) for v, f in dashpot.table] or [number(c)]
-            places = ", ".join(str(DOFS[d]) for d in dofs[: len(ends)])
+            places = ", ".join(str(DOFS[d]) for d in along[: len(both)])
             yield f"*DASHPOT, ELSET=DASHPOT{count}{option}\n{places}\n" + "\n".join(rows) + "\n"
     gaps = [p for p in model.contacts if is_gap(p)]
     for count, pair in enumerate(gaps, start=1):
