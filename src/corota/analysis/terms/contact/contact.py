@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.gaps import (
-    CLOSED,
     COVERED,
     OPEN,
     ContactState,
@@ -546,7 +545,7 @@ class ContactTerm(Term):
         states = [np.zeros(pair.n, np.int8) for pair in self.pairs]
         if self.at is not None:
             states = self.at.states
-        for pair, terms, (_, q), (_, before), state in zip(
+        for pair, terms, (_, q), begun, state in zip(
             self.pairs,
             contact_state.terms,
             self.parts(contact_state.multipliers),
@@ -555,7 +554,7 @@ class ContactTerm(Term):
             strict=True,
         ):
             late = pair.beyond_trapezoid
-            pair.commit(terms, q, before, state == CLOSED)
+            pair.commit(terms, q, begun, state)
             if self.damps:
                 self.late_work += pair.beyond_trapezoid - late
         # The equations of both ends have these forces, and so has the work of the loads.

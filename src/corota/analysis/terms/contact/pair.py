@@ -522,31 +522,61 @@ class Pair:
 
     # -- increments --------------------------------------------------------------------
 
-    def commit(self, terms: Terms, q: Floats, before: Floats, stuck: NDArray[np.bool_]) -> None:
+    def commit(
+        self, terms: Terms, q: Floats, before: tuple[Floats, Floats], states: NDArray[np.int8]
+    ) -> None:
         """Accept a state.
 
         Parameters
         ----------
-        q, before : ndarray, shape (n,)
-            Shear tractions, and those of the committed state.
-        stuck : ndarray of bool, shape (n,)
-            Sticking constraints.
+        q : ndarray, shape (n,)
+            Shear tractions.
+        before : ndarray, ndarray, shape (n,)
+            Pressures and shear tractions of the committed state.
+        states : ndarray of int, shape (n,)
+            Committed.
         """
         self.core.commit()
         self.frozen = False
         seen = terms.area > COVERED * self.full
-        self.area = np.where(seen, terms.area, self.full)
+        was, self.area = self.area, np.where(seen, terms.area, self.full)
         if self.friction:
             slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
             self.slid += np.where(q != 0.0, slip, 0.0)
-            # Constraints that stuck or reversed slid after their traction had grown. With
-            # rate conditions the traction of the end acts over the whole slip.
-            whole = stuck | (before * q < 0.0) | (self.start is not None)
-            mean = np.where(whole, q, 0.5 * (before + q))
-            # Constraints that opened may have slid back without traction.
-            self.friction_work += float(np.maximum(-mean * terms.slip, 0.0).sum())
-            grown = (0.5 * (before - q) * terms.slip)[whole]
-            self.beyond_trapezoid += float(np.maximum(grown, 0.0).sum())
+            areas = np.where(states != OPEN, was, 0.0), np.where(seen, terms.area, 0.0)
+            self._rub(slip, areas, before, q)
+
+    def _rub(
+        self, slip: Floats, areas: tuple[Floats, Floats], before: tuple[Floats, Floats], q: Floats
+    ) -> None:
+        """Add the friction work of an increment, with the mean of the tractions at its ends.
+
+        What slides does so from the start: its traction was at the bound then, though a constraint
+        that stuck or that slid back before had another. Contact that moves along the slave leaves
+        areas and comes to others: what it leaves slid as far as the rest. With rate conditions the
+        traction of the end acts over the whole slip.
+        """
+        was, now = areas
+        p, last = before
+        rates, bound = self.start is not None, self.bound(p)
+        limited = np.isfinite(bound)
+        total = float((now * np.abs(q)).sum())
+        stays = np.where((q != 0.0) | (total == 0.0), np.minimum(was, now), 0.0)
+        begin = q if rates else np.where((q != 0.0) & limited, np.sign(q) * bound, last)
+        # Constraints that opened may have slid back without traction.
+        work = stays * np.maximum(-0.5 * (begin + q) * slip, 0.0)
+        work += (1.0 if rates else 0.5) * (now - stays) * np.maximum(-q * slip, 0.0)
+        self.friction_work += float(work.sum())
+        late = stays * np.maximum(0.5 * (last - begin) * slip, 0.0)
+        self.beyond_trapezoid += float(late.sum())
+        if total > 0.0 and not rates:
+            way = float((now * np.maximum(-q * slip, 0.0)).sum()) / total
+            leaves = was - stays
+            at_first = np.sign(float((now * q).sum())) * last
+            left = float((leaves * np.where(limited, bound, at_first)).sum())
+            grown = left - float((leaves * at_first).sum())
+            self.friction_work += 0.5 * max(left, 0.0) * way
+            self.beyond_trapezoid += 0.5 * max(grown, 0.0) * way
 
 
 def _surfaces(edges: Ints, nodes: Ints) -> Ints:
