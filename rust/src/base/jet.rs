@@ -75,6 +75,13 @@ impl<T: Real> Jet<T> {
         let e = self.v.scale(k).exp();
         self.chain(e, e.scale(k), e.scale(k * k))
     }
+
+    /// `exp(k x) - 1`, to all digits of a small value.
+    #[inline(always)]
+    pub fn exp_m1(self, k: f64) -> Self {
+        let (e, less) = (self.v.scale(k).exp(), self.v.scale(k).exp_m1());
+        self.chain(less, e.scale(k), e.scale(k * k))
+    }
 }
 
 impl<T: Real> Add for Jet<T> {

@@ -100,6 +100,16 @@ pub trait Real:
     fn recip(self) -> Self {
         Self::one() / self
     }
+    /// `exp(x) - 1` to all digits of a small one (Kahan; Higham 2002, section 1.14.1).
+    #[inline(always)]
+    fn exp_m1(self) -> Self {
+        let e = self.exp();
+        let less = e - Self::one();
+        let exact = less * self / e.ln();
+        let near = less.abs().lt(Self::real(f64::MIN_POSITIVE));
+        let exact = Self::select(near, self, exact);
+        Self::select(self.abs().lt(Self::one()), exact, less)
+    }
 }
 
 impl Real for f64 {

@@ -47,19 +47,21 @@ impl Energy for ChainEnergy {
         if self.d == 0.0 {
             return Jet::zero();
         }
-        let square = s.theta.exp(2.0).plus(-1.0).scale(0.5);
+        let square = s.theta.exp_m1(2.0).scale(0.5);
         (square - s.theta).scale(1.0 / self.d)
     }
     #[inline(always)]
     fn shape<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
         let mut w = Jet::zero();
-        let first = s.powers(2.0);
-        let mut power = first;
+        let more = s.first();
+        let first = more.plus(3.0);
+        // Powers of the invariant, less those of 3.
+        let mut power = more;
         for (i, &c) in self.c.iter().enumerate() {
             if i > 0 {
-                power = power * first;
+                power = power * first + more.scale(3.0_f64.powi(i as i32));
             }
-            w += power.plus(-(3.0_f64.powi(i as i32 + 1))).scale(c);
+            w += power.scale(c);
         }
         w
     }

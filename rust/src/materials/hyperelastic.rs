@@ -29,15 +29,20 @@ pub struct Stretches<T> {
 }
 
 impl<T: Real> Stretches<T> {
-    /// Sum of the powers of the principal stretches, from which the volume part is taken out.
+    /// Sum of the powers of the principal stretches, from which the volume part is taken out, less
+    /// 3: to all digits of a small one, of second order in the strain.
     #[inline(always)]
     pub fn powers(&self, alpha: f64) -> Jet<T> {
         let root = self.mu.v.scale(alpha).exp();
         let (p, q) = (root.scale(2.0), (root * root).recip());
-        let a2 = alpha * alpha;
-        let [c, c1, c2] = cosh_root(self.rho.v.scale(a2));
+        let (a2, two, three) = (alpha * alpha, T::real(2.0), T::real(3.0));
+        let [c_m1, c1, c2] = cosh_root_m1(self.rho.v.scale(a2));
+        let c = c_m1 + T::one();
         let (plane, slope) = (p * c, p * c1.scale(a2));
-        let mut y = Jet::constant(plane + q);
+        // 2 (g + 1) + (g + 1)^-2 - 3 = g^2 (3 + 2 g) / (g + 1)^2
+        let grown = self.mu.v.scale(alpha).exp_m1();
+        let stretched = grown * grown * q * grown.fma(two, three);
+        let mut y = Jet::constant(p.fma(c_m1, stretched));
         y.d[0] = (plane - q.scale(2.0)).scale(alpha);
         y.d[1] = slope;
         y.h[0] = (plane + q.scale(4.0)).scale(a2);
@@ -49,13 +54,13 @@ impl<T: Real> Stretches<T> {
     /// The first invariant of the isochoric `C`, less 3.
     #[inline(always)]
     pub fn first(&self) -> Jet<T> {
-        self.powers(2.0).plus(-3.0)
+        self.powers(2.0)
     }
 
     /// The second invariant of the isochoric `C`, less 3.
     #[inline(always)]
     pub fn second(&self) -> Jet<T> {
-        self.powers(-2.0).plus(-3.0)
+        self.powers(-2.0)
     }
 
     /// `sum (J - 1)^(2 i) / D_i`; a zero adds nothing.
@@ -80,9 +85,9 @@ impl<T: Real> Stretches<T> {
     }
 }
 
-/// `cosh(sqrt z)` with its first and second derivatives.
+/// `cosh(sqrt z) - 1` with its first and second derivatives.
 #[inline(always)]
-fn cosh_root<T: Real>(z: T) -> [T; 3] {
+fn cosh_root_m1<T: Real>(z: T) -> [T; 3] {
     // Terms that reach round-off at one.
     const TERMS: usize = 11;
     let mut factors = [1.0; TERMS];
@@ -94,7 +99,8 @@ fn cosh_root<T: Real>(z: T) -> [T; 3] {
     for k in (0..TERMS).rev() {
         p[2] = p[2].fma(near, p[1].scale(2.0));
         p[1] = p[1].fma(near, p[0]);
-        p[0] = p[0].fma(near, T::real(factors[k]));
+        let factor = if k == 0 { 0.0 } else { factors[k] };
+        p[0] = p[0].fma(near, T::real(factor));
     }
     let far = T::one().lt(z);
     if T::any(far) {
@@ -106,7 +112,7 @@ fn cosh_root<T: Real>(z: T) -> [T; 3] {
         let first = (e - i).scale(0.25) / root;
         let second = (value - first.scale(2.0)).scale(0.25) / z;
         p = [
-            T::select(far, value, p[0]),
+            T::select(far, value - T::one(), p[0]),
             T::select(far, first, p[1]),
             T::select(far, second, p[2]),
         ];

@@ -35,15 +35,15 @@ impl Energy for FoamEnergy {
     fn shape<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
         let mut w = Jet::zero();
         for (&[factor, alpha], &beta) in self.terms.iter().zip(&self.beta) {
-            let shape = s.theta.exp(alpha / 3.0) * s.powers(alpha);
+            let (grown, shape) = (s.theta.exp_m1(alpha / 3.0), s.powers(alpha));
             let k = -alpha * beta;
             let e = s.theta.v.scale(k).exp();
             let value = match beta {
                 0.0 => s.theta.v.scale(-alpha),
-                _ => (e - T::one()).scale(1.0 / beta),
+                _ => s.theta.v.scale(k).exp_m1().scale(1.0 / beta),
             };
             let volume = s.theta.chain(value, e.scale(-alpha), e.scale(-alpha * k));
-            w += (shape.plus(-3.0) + volume).scale(factor);
+            w += (grown * shape + shape + grown.scale(3.0) + volume).scale(factor);
         }
         w
     }

@@ -57,7 +57,7 @@ impl Energy for OgdenEnergy {
     fn shape<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {
         let mut w = Jet::zero();
         for &[factor, alpha] in &self.terms {
-            w += s.powers(alpha).plus(-3.0).scale(factor);
+            w += s.powers(alpha).scale(factor);
         }
         w
     }
