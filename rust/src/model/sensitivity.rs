@@ -78,6 +78,8 @@ pub struct Gradients {
     pub initial: Vec<f64>,
     /// Elements that could not be evaluated.
     pub failed: Vec<usize>,
+    /// Whether a law was met whose tangent may differ from the derivative of its stress.
+    pub inexact: bool,
 }
 
 /// Gradients of all elements: by node, by dof, and by block.
@@ -90,6 +92,8 @@ pub struct Sums {
     pub initial: Vec<Vec<f64>>,
     /// Block and index of elements that could not be evaluated.
     pub failed: Vec<(usize, usize)>,
+    /// Whether the tangents of all laws are the derivatives of their stress.
+    pub exact: bool,
     elements: Vec<usize>,
 }
 
@@ -103,6 +107,7 @@ impl Sums {
             thickness: blocks.iter().map(|b| vec![0.0; points(b)]).collect(),
             initial: blocks.iter().map(|b| vec![0.0; 4 * points(b)]).collect(),
             failed: Vec::new(),
+            exact: true,
             elements: blocks.iter().map(|b| b.n_elements).collect(),
         }
     }
@@ -134,6 +139,7 @@ impl Sums {
                 all[e as usize * width..][..width].copy_from_slice(row);
             }
         }
+        self.exact &= !part.inexact;
         self.failed.extend(part.failed.iter().map(|&e| (block, e)));
     }
 }
@@ -361,6 +367,7 @@ where
                     }
                 }
             }
+            out.inexact |= !(Self::TAPED && tape.exact) || section.law.ideal();
             if failed {
                 out.failed.push(self.elements[e] as usize);
             }

@@ -488,12 +488,13 @@ impl PyProblem {
     }
 
     /// Gradients of ``force . internal force + state . new state`` at displacements ``u`` from the
-    /// committed state, by forward differentiation in each element.
+    /// committed state, by differentiation of each law at its points.
     ///
     /// ``force`` are weights by dof, ``state`` weights of the histories as ``histories`` gives them,
     /// or empty; ``wanted`` names the inputs among positions, displacements, state, thickness,
     /// initial. Returns a dict: positions (n_nodes, 2), displacements (n_dofs,), state as
-    /// ``histories``; thickness and initial are lists by block of (n, p) and (n, p, 4).
+    /// ``histories``; thickness and initial are lists by block of (n, p) and (n, p, 4); exact is
+    /// whether the tangents of all laws are the derivatives of their stress.
     fn differentiate<'py>(
         &self,
         py: Python<'py>,
@@ -524,6 +525,7 @@ impl PyProblem {
         }
         let d = PyDict::new(py);
         let nodes = self.inner.x.len();
+        d.set_item("exact", all.exact)?;
         d.set_item("positions", all.positions.into_pyarray(py).reshape([nodes, 2])?)?;
         d.set_item("displacements", all.displacements.into_pyarray(py))?;
         let state: Vec<_> = all.state.into_iter().map(|s| s.into_pyarray(py)).collect();

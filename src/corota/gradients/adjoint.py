@@ -329,13 +329,16 @@ def _backward(
     for column, leaf in own:
         rhs[:, column] -= leaf.by_displacement(point)
         moved[:, column] = leaf.by_reaction(point)
+    # Whether the tangent may differ from the derivative: not known before the laws are met.
+    correct = trajectory.remembers
     for column in range(count):
         if y[column]:
             found = core.differentiate(here, system.nlgeom, nothing, y[column], ["displacements"])
             rhs[:, column] -= system.at_nodes(found["displacements"])
-    z = _solve(trajectory, point, rhs, moved, exact=trajectory.remembers)
+            correct = not found["exact"]
+    z = _solve(trajectory, point, rhs, moved, correct)
     adjoint = Adjoint(increment, own, z, [trajectory.store.keep(each) for each in y])
-    _at_fixed_control(trajectory, point, own, adjoint)
+    _at_fixed_control(trajectory, point, own, adjoint, correct)
     if later is not None:
         assert motion is not None
         vars(later).update(vars(motion.before(later, z, increment.dt)))
@@ -356,18 +359,18 @@ def _backward(
 
 
 def _solve(
-    trajectory: Trajectory, point: Point, rhs: Floats, moved: Floats, exact: bool = False
+    trajectory: Trajectory, point: Point, rhs: Floats, moved: Floats, correct: bool = False
 ) -> Floats:
     """Solve ``(dr/du)^T z = rhs`` with given z at prescribed dofs.
 
-    With `exact` the elements have their differentiated forces: some laws have a symmetric
+    With `correct` the elements have their differentiated forces: some laws have a symmetric
     tangent that is not quite their derivative.
     """
     system = trajectory.system
     at = system.evaluate(point.u, point.increment.time)
     if trajectory.motion is not None:
         trajectory.motion.stiffen(at, point.increment.dt)
-    tangent = _of_elements(point) if exact else None
+    tangent = _of_elements(point) if correct else None
     z = system.correct_adjoint(at, rhs, moved)
     if tangent is None:
         return z
@@ -410,7 +413,11 @@ def _missing(point: Point, tangent: Floats, z: Floats) -> Floats:
 
 
 def _at_fixed_control(
-    trajectory: Trajectory, point: Point, own: list[tuple[int, Measure]], adjoint: Adjoint
+    trajectory: Trajectory,
+    point: Point,
+    own: list[tuple[int, Measure]],
+    adjoint: Adjoint,
+    correct: bool = False,
 ) -> None:
     """Correct adjoint states where the load factor is an unknown and a displacement is prescribed.
 
@@ -438,7 +445,7 @@ def _at_fixed_control(
         )
     row = control_row(system, terms)
     none = np.zeros((system.n_dofs, 1))
-    y = _solve(trajectory, point, row[:, None], none, exact=trajectory.remembers)[:, 0]
+    y = _solve(trajectory, point, row[:, None], none, correct)[:, 0]
     rate = factor_rate(point)
     weights = np.zeros(z.shape[1])
     factors = {column: leaf.by_factor(point) for column, leaf in own}
