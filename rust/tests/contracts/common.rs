@@ -191,6 +191,7 @@ where
         stride: 1,
         clock: corota::materials::Clock { increment: 0.5, end: 2.0, lasting: true },
         per_point: PerPoint::default(),
+        tape: None,
     };
     let answer = local::<E, T, N, M, A>(&x, &frame.q, section, &mut history, true);
     let mut stiffness = answer.stiffness;
