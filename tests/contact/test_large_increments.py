@@ -10,7 +10,7 @@ import pytest
 
 import corota as ct
 from tests.audits.test_contact_arcs import belt, polygon_ratio
-from tests.support.blocks import METHODS, block, chain, reaction, scalar, solve
+from tests.support.blocks import METHODS, STIFF, block, chain, reaction, scalar, solve
 from tests.support.pairs import quickly
 
 TURN = 2.0 * math.pi
@@ -88,3 +88,50 @@ def test_a_rope_over_three_quarters_of_a_drum_does_not_pass_through_it() -> None
     results = solve(model)
     left = math.hypot(*reaction(results, [0])[:2])
     assert left == pytest.approx(1.0 / polygon_ratio(angle, n, mu), rel=1e-4)
+
+
+def rolled(travel: float, gap: float, method: str, disc: str, slave: str) -> np.ndarray:
+    """Way and turn of a disc of the radius 1 between two plates, over their exact values."""
+    parts = {
+        "low": block(2.6, 0.2, 26, 1, (-1.3, -0.2)),
+        "high": block(3.6, 0.2, 36, 1, (-1.8, 2.0 + 2.0 * gap)),
+    }
+    if disc == "meshed":
+        parts["disc"] = ct.mesh.move(ct.mesh.annulus(0.5, 1.0, 2, 48), (0.0, 1.0 + gap))
+    mesh = ct.mesh.assembly(**parts)
+    core = ct.mesh.add_node(mesh, 0.0, 1.0 + gap, "core")
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=STIFF)
+    model.fix("low.bottom")
+    model.force("high.top", y=-10.0)
+    model.fix("high.left", x=travel, y=None)
+    if disc == "meshed":
+        model.rigid("disc.inner", core)
+    circle = ct.RigidCurve.circle((0.0, 1.0 + gap), 1.0, reference=core)
+    for plate in ("low.top", "high.bottom"):
+        sides = (plate, "disc.outer" if disc == "meshed" else circle)
+        model.contact(
+            *(sides if slave == "plates" else sides[::-1]), friction=0.5, method=method, name=plate
+        )
+    frame = solve(model).frames[-1]
+    return np.array([frame.U[core, 0], -frame.UR[core]]) / (0.5 * travel)
+
+
+@pytest.mark.parametrize(("travel", "gap"), [(2.0, 0.0), (-0.6, 0.02)])
+@pytest.mark.parametrize(
+    ("disc", "slave"),
+    [
+        ("rigid", "plates"),
+        pytest.param("meshed", "plates", marks=pytest.mark.slow),
+        pytest.param("meshed", "disc", marks=pytest.mark.slow),
+    ],
+)
+@pytest.mark.parametrize("method", METHODS)
+def test_a_disc_that_nothing_presses_at_first_rolls(
+    method: str, disc: str, slave: str, travel: float, gap: float
+) -> None:
+    """It moves by half the travel, and turns by as much over its radius. Contact begins below and
+    above its center, wherever it is at the end: the points that were opposite to those in contact
+    at the end would give a turn of 1.127 or .833 for 1."""
+    exact = 2e-3 if disc == "rigid" else 2e-2
+    np.testing.assert_allclose(rolled(travel, gap, method, disc, slave), 1.0, atol=exact)

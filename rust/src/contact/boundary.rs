@@ -1,6 +1,7 @@
 //! Arc length along the boundary of a side: over its edges, round corners, from end to end.
 // SPDX-License-Identifier: BSD-3-Clause
 
+use super::corners::{LEAST_TURN, turn};
 use super::curve::{Curve, Edge, Shape, Vec2, dot, sub};
 use super::master::{Master, Surface};
 use super::travel::{near, way_round};
@@ -60,6 +61,8 @@ pub struct Boundary {
     round: Vec<f64>,
     /// Sense of the way round each part: 1 to the left.
     sense: Vec<f64>,
+    /// How far each member may lie beside the round that it is a piece of: h^2 / 8 R.
+    pub sagitta: Vec<f64>,
     longest: f64,
 }
 
@@ -90,7 +93,14 @@ impl Boundary {
         }
         let sense = twice.into_iter().map(f64::signum).collect();
         let longest = length.iter().copied().fold(0.0, f64::max);
-        Self { members, part, start, round, sense, longest }
+        let mut sagitta = vec![0.0_f64; n];
+        for (j, k) in next.iter().enumerate().filter_map(|(j, k)| k.map(|k| (j, k))) {
+            let angle = turn([members[j].normal_at(1.0), members[k].normal_at(-1.0)]).abs();
+            for m in [j, k].into_iter().filter(|_| angle < LEAST_TURN) {
+                sagitta[m] = sagitta[m].max(0.125 * angle * length[m]);
+            }
+        }
+        Self { members, part, start, round, sense, sagitta, longest }
     }
 
     /// Arc length at a point of a member, or of its continuation.

@@ -3,11 +3,13 @@
 //! With arc lengths a along the slave and m along the master, which run against each other, two
 //! surfaces that stick or roll keep a + m. The slip of two points that are opposite now is therefore
 //! the change of a + m since the place where their surfaces touched when the increment began: the
-//! same slave point if it was closed, or a closed place towards which the gap falls along the slave,
-//! from which contact has rolled or slid; else the place that was opposite to it. Lengths are those at the beginning, with which surfaces
-//! are laid on each other. The motion enters through the pairing alone, so that no rotation gives
-//! slip, and a path round a drum or a corner counts in full. Positions show no whole turns: those of a
-//! body round which a path closes are those of a node that turns with it, if there is one.
+//! same slave point if it was closed or overlapped, or that towards which the gap falls along the slave,
+//! from which contact has rolled or slid: surfaces that were apart touched there first. Where the gap
+//! falls by no more than the height of a chord, the place that was opposite. Lengths are those at the
+//! beginning, with which surfaces are laid on each other. The motion enters through the pairing alone,
+//! so that no rotation gives slip, and a path round a drum or a corner counts in full. Positions show no
+//! whole turns: those of a body round which a path closes are those of a node that turns with it, if
+//! there is one.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::boundary::{Boundary, followers};
@@ -190,7 +192,7 @@ impl Start {
 
     /// Where the surfaces touched from which a slave point came.
     fn origin(&self, list: &[Station], part: usize, (edge, xi, a): (usize, f64, f64)) -> Place {
-        let [slave, _] = self.sides.as_ref().expect("sides of the beginning");
+        let [slave, master] = self.sides.as_ref().expect("sides of the beginning");
         let n = list.len();
         let ends = |s: &Station| s.span.map(|r| slave.at(s.edge, r));
         let outside = |s: &Station| {
@@ -210,7 +212,7 @@ impl Start {
             .expect("a list of stations");
         let begun = at;
         let step = slave.longest();
-        let rank = |i: usize| if list[i].closed { f64::NEG_INFINITY } else { list[i].gap };
+        let rank = |i: usize| if list[i].closed { f64::NEG_INFINITY } else { list[i].gap.max(0.0) };
         let mut last = at;
         for _ in 0..n {
             let round = slave.round(part).is_finite();
@@ -235,7 +237,11 @@ impl Start {
                 _ => break,
             }
         }
-        if !list[at].closed {
+        // Rounds that fit close all over, each point where it was: what else their gaps differ by
+        // are the heights of chords.
+        let s = &list[begun];
+        let beside = slave.sagitta[s.edge] + master.sagitta[s.master];
+        if rank(begun) - rank(at) <= beside {
             at = begun;
         }
         let found = &list[at];

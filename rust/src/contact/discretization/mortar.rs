@@ -65,8 +65,8 @@ pub struct Overlap {
     pub pair: usize,
     pub limits: [Limit; 2],
     pub values: [f64; 2],
-    /// Distance at the middle, without sign.
-    pub distance: f64,
+    /// Gap at the middle.
+    pub gap: f64,
 }
 
 /// Part of the slave edge opposite to a master, if they face each other within the bounds:
@@ -98,7 +98,7 @@ pub fn overlap(
         Master::Curve(_) => FACING,
         Master::Arc(_) => FACING_ARC,
     };
-    let [mut least, mut most, mut distance] = [f64::INFINITY, f64::NEG_INFINITY, 0.0];
+    let [mut least, mut most, mut gap] = [f64::INFINITY, f64::NEG_INFINITY, 0.0];
     for (i, (r, _)) in GAUSS.iter().enumerate() {
         let xi = 0.5 * (values[0] + values[1]) + 0.5 * r * (values[1] - values[0]);
         let t = slave.slope(xi);
@@ -111,16 +111,16 @@ pub fn overlap(
         least = least.min(hit.gap);
         most = most.max(-hit.gap);
         if i == 1 {
-            distance = hit.gap.abs();
+            gap = hit.gap;
         }
     }
-    (least <= reach && most <= depth).then_some(Overlap { pair, limits, values, distance })
+    (least <= reach && most <= depth).then_some(Overlap { pair, limits, values, gap })
 }
 
 /// Where a slave edge sees several masters one behind the other, leaves it the closest.
 pub fn clip_occluded(overlaps: &mut Vec<Overlap>) {
     let mut order: Vec<usize> = (0..overlaps.len()).collect();
-    order.sort_by(|&a, &b| overlaps[a].distance.total_cmp(&overlaps[b].distance));
+    order.sort_by(|&a, &b| overlaps[a].gap.abs().total_cmp(&overlaps[b].gap.abs()));
     let mut seen: Vec<Overlap> = Vec::with_capacity(order.len());
     for i in order {
         let mut o = overlaps[i];
@@ -344,7 +344,7 @@ impl Discretization for Mortar {
                     span: o.values,
                     master: j,
                     opposite: o.limits.map(opposite),
-                    gap: o.distance,
+                    gap: o.gap,
                     closed,
                 }
             };
