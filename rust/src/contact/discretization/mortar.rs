@@ -14,7 +14,8 @@
 //! of a curved master over the chord of a linear edge is for this taken out of the gap. Quadratic edges have (1 -+ 2 xi) / 2, which
 //! give the value of a parabola at its vertex. The sum is one, so that a uniform pressure passes the
 //! patch test. Where the master ends within such an edge, xi runs over the covered part, as if the edge
-//! ended there: else the area of a node would be negative.
+//! ended there: else the area of a node would be negative. An end that a support guides is none: there
+//! functions are those inside the surface, for the slip the shape functions.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::super::corners::{open_ends, round};
@@ -193,8 +194,9 @@ struct Facing<'a, const D: usize> {
     /// The undeformed slave edge, and its thickness.
     reference: &'a Curve<f64>,
     thickness: Depth,
-    /// Slope of the functions of the corners, times two.
+    /// Slopes of the functions of the corners, times two: for the gap, for the slip.
     slope: f64,
+    slope_of_slip: f64,
     /// Clearance taken off the gap at the corners of the edge.
     offset: [f64; 2],
     /// Height of the master over the chord of the edge.
@@ -216,7 +218,7 @@ fn integrals<const D: usize>(
     now: &Facing<'_, D>,
     start: Option<&Start>,
 ) -> Integrals<D> {
-    let Facing { slave, master, members, run, reference, thickness, slope, offset, height } = now;
+    let Facing { slave, master, members, run, reference, thickness, slope, .. } = now;
     let limits = overlap.limits.map(|limit| match limit {
         Limit::Fixed(r) => Hyper::real(r),
         Limit::Foot(end) => slave.foot(master.end(end)),
@@ -230,7 +232,8 @@ fn integrals<const D: usize>(
     let mut along = [[Dual::real(0.0); D]; 2];
     let straight = slave.straight.then(|| (slave.d, unit(outward(slave.d))));
     // Weighted, these give the clearance of each corner times its area.
-    let shift = [0.5 * (offset[0] + offset[1]), 1.5 / slope * (offset[1] - offset[0])];
+    let [a, b] = now.offset;
+    let shift = [0.5 * (a + b), 1.5 / slope * (b - a)];
     for (r, w) in GAUSS {
         let xi = middle + half.scale(r);
         let place = match (&between, run) {
@@ -248,8 +251,8 @@ fn integrals<const D: usize>(
         area[0] += da.v;
         area[1] += da.v * place.v;
         let mut gap_there = hit.gap - place.scale(shift[1]) - Hyper::real(shift[0]);
-        if *height != 0.0 {
-            gap_there += (Hyper::real(1.0) - xi * xi).scale(*height);
+        if now.height != 0.0 {
+            gap_there += (Hyper::real(1.0) - xi * xi).scale(now.height);
         }
         let part = da * gap_there;
         gap[0] += part;
@@ -273,15 +276,15 @@ fn integrals<const D: usize>(
         slip[0] += part;
         slip[1] += part * place.v;
     }
-    let corners = |[a, b]: [f64; 2]| [0.5 * (a - slope * b), 0.5 * (a + slope * b)];
+    let corners = |slope: f64, [a, b]: [f64; 2]| [0.5 * (a - slope * b), 0.5 * (a + slope * b)];
     let sum = |slope: f64| (gap[0] + gap[1].scale(slope)).scale(0.5);
     let [a, b] = along;
     let side = |slope: f64| std::array::from_fn(|v| (a[v] + b[v].scale(slope)).scale(0.5));
     Integrals {
         gap: [sum(-slope), sum(*slope)],
-        slip: corners(slip),
-        direction: [side(-slope), side(*slope)],
-        area: corners(area),
+        slip: corners(now.slope_of_slip, slip),
+        direction: [side(-now.slope_of_slip), side(now.slope_of_slip)],
+        area: corners(*slope, area),
     }
 }
 
@@ -297,10 +300,12 @@ fn length<T: Smooth>(c: &Curve<f64>, r: T) -> T {
 
 /// Weighted gaps and slips at the corners of slave edges.
 pub struct Mortar {
-    /// Slope of the functions of each edge, times two.
+    /// Slopes of the functions of each edge, times two: for the gap, for the slip.
     slope: Vec<f64>,
-    /// The same where no support guides an end of the slave: about one that is guided nothing tips,
-    /// and a traction along its support would not move the slave, so that it could take any size.
+    slope_of_slip: Vec<f64>,
+    /// Those for the gap where no end of the slave is, and where none of its ends is guided by a
+    /// support: about one that is guided nothing tips.
+    inner: Vec<f64>,
     free: Vec<f64>,
     /// Curvature of each master in the reference configuration.
     curvature: Vec<f64>,
@@ -308,9 +313,11 @@ pub struct Mortar {
 
 impl Discretization for Mortar {
     fn hold(&mut self, sides: &Sides, held: &[bool]) {
-        for (i, slope) in self.slope.iter_mut().enumerate() {
-            let fixed = sides.slave.constraints[i][..2].iter().any(|&c| held[c]);
-            *slope = if fixed { 1.0 } else { self.free[i] };
+        for (i, &free) in self.free.iter().enumerate() {
+            let guided = sides.slave.constraints[i][..2].iter().any(|&c| held[c]);
+            self.slope[i] = if guided { self.inner[i] } else { free };
+            // A traction along the support would not move the slave, so that it could take any size.
+            self.slope_of_slip[i] = if guided { 1.0 } else { free };
         }
     }
 
@@ -366,19 +373,21 @@ impl Mortar {
         };
         let curvature: Vec<f64> = (0..sides.master.len()).map(curvature).collect();
         let curved = curvature.iter().any(|k| *k != 0.0);
-        let slope = |(i, edge): (usize, &Edge)| {
+        let slope = |(i, edge): (usize, &Edge), end: bool| {
             // Around an axis nothing tips, and with a slope of 3 a node on it would have no area.
             if sides.itself || !matches!(sides.slave.thickness[i], Depth::Thickness(_)) {
                 return 1.0;
             }
-            match (ends[i].contains(&true), round[i] || curved, edge.n_nodes) {
+            match (end, round[i] || curved, edge.n_nodes) {
                 (true, _, _) | (_, true, 2) => 3.0,
                 (_, true, _) => 2.0,
                 _ => 1.0,
             }
         };
-        let slope: Vec<f64> = sides.slave.edges.iter().enumerate().map(slope).collect();
-        Self { free: slope.clone(), slope, curvature }
+        let edges = || sides.slave.edges.iter().enumerate();
+        let inner = edges().map(|e| slope(e, false)).collect();
+        let free: Vec<f64> = edges().map(|e| slope(e, ends[e.0].contains(&true))).collect();
+        Self { slope: free.clone(), slope_of_slip: free.clone(), inner, free, curvature }
     }
 
     /// Height of a master over the chord of a slave edge, whose functions take a gap for linear.
@@ -454,6 +463,7 @@ impl Mortar {
             reference: &sides.reference[i],
             thickness: sides.slave.thickness[i],
             slope: self.slope[i],
+            slope_of_slip: self.slope_of_slip[i],
             offset: [sides.offset[constraints[0]], sides.offset[constraints[1]]],
             height: self.height(sides, i, j),
         };

@@ -113,7 +113,6 @@ class Pair:
         self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
         self.held_ends = np.zeros(self.n, bool)  # fixed ends of the slave
-        self.guided_ends = self.held_ends  # those that a support guides
         integrates = isinstance(item, ContactPair) and METHODS[item.method]["integrates"]
         if integrates and not self.slave.pointwise:
             ends = self.place[self.slave.nodes[:, :2]]
@@ -206,7 +205,7 @@ class Pair:
         """Find the ends of the slave that supports hold in a step, and tell the core.
 
         A fixed end gives its part to its neighbor. An end that is guided tips nothing: the core
-        weighs gap and slip there as inside the surface.
+        weighs gaps there as inside the surface, and slips with the shape functions.
 
         Parameters
         ----------
@@ -219,8 +218,7 @@ class Pair:
         ends = (left < 0) | (right < 0)
         count = np.round((constrained[self.nodes, :2] ** 2).sum(axis=1))
         self.held_ends = ends & (count == 2)
-        self.guided_ends = ends & (count == 1)
-        self.core.hold(self.guided_ends.tolist())
+        self.core.hold((ends & (count == 1)).tolist())
 
     def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
         """Constraints of slave surfaces on which none is closed at a committed state."""
