@@ -417,3 +417,40 @@ def test_modal_damping_in_the_words_of_abaqus(tmp_path: Path, words: str) -> Non
     other = motion.format(", VISCOUS=COMPOSITE")
     with pytest.raises(ct.DeckError, match="COMPOSITE is not known"):
         read(tmp_path, OSCILLATOR.format(procedure="*MODAL DYNAMIC\n.01, .5", motion=other))
+
+
+@pytest.mark.parametrize(
+    ("end", "load"), [("2., 0.", "PY, -3."), ("0., 2.", "PX, 3."), ("-2., 0.", "PY, 3.")]
+)
+def test_a_load_across_beams_of_abaqus(tmp_path: Path, end: str, load: str) -> None:
+    """P2 acts to the left of the direction of a planar beam; CalculiX has a pressure there."""
+    deck = f"""*PREPRINT, ECHO=NO
+*NODE, NSET=NALL
+1, 0., 0.
+2, {end}
+*ELEMENT, TYPE=B21, ELSET=E
+1, 1, 2
+*MATERIAL, NAME=M
+*ELASTIC
+1000., .3
+*BEAM SECTION, ELSET=E, MATERIAL=M, SECTION=RECT
+1., 1.
+0., 0., -1.
+*BOUNDARY
+1, 1, 6
+*STEP
+*STATIC
+*DLOAD
+E, {{load}}
+*END STEP
+"""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        wanted = ct.solve(read(tmp_path, deck.format(load=load)), threads=1).frames[-1]
+        found = ct.solve(read(tmp_path, deck.format(load="P2, -3.")), threads=1).frames[-1]
+        assert np.abs(wanted.U).max() > 1e-3
+        assert pytest.approx(wanted.U, rel=1e-12) == found.U
+        assert pytest.approx(wanted.RF, rel=1e-12) == found.RF
+        for old, new in (("*STEP", "*STEP, NLGEOM"), ("*PREPRINT, ECHO=NO\n", "")):
+            with pytest.raises(ct.DeckError, match="PX and PY"):
+                read(tmp_path, deck.format(load="P2, -3.").replace(old, new))

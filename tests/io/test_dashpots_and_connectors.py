@@ -343,3 +343,62 @@ def test_what_connectors_refuse(tmp_path: Path) -> None:
     ):
         with pytest.raises(ct.DeckError, match=said):
             connected(tmp_path, section, behavior)
+
+
+def test_damping_in_a_step_is_that_of_the_model(tmp_path: Path) -> None:
+    """As in CalculiX; beside a material that has its own it is refused."""
+    strip = """*NODE, NSET=ALL
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+*ELEMENT, TYPE=CPS4, ELSET=E
+1, 1, 2, 3, 4
+*MATERIAL, NAME=M
+*ELASTIC
+1000., .3
+*DENSITY
+1.
+{material}*SOLID SECTION, ELSET=E, MATERIAL=M
+1.
+*BOUNDARY
+1, 1, 2
+4, 1, 2
+*STEP
+*DYNAMIC, DIRECT
+.01, .2
+{step}*CLOAD
+2, 2, 5.
+*END STEP
+"""
+    card = "*DAMPING, ALPHA=2., BETA=.01\n"
+    own = run(tmp_path, strip.format(material=card, step="")).frames[-1].U
+    free = run(tmp_path, strip.format(material="", step="")).frames[-1].U
+    found = run(tmp_path, strip.format(material="", step=card)).frames[-1].U
+    assert np.abs(own - free).max() > 0.01 * np.abs(free).max()
+    assert found == pytest.approx(own, rel=1e-12)
+    with pytest.raises(ct.DeckError, match="has its own"):
+        run(tmp_path, strip.format(material=card.replace("2.", "3."), step=card))
+
+
+def test_damping_of_a_harmonic_step(tmp_path: Path) -> None:
+    """A mass on a spring near its resonance: F / |k - m w^2 + i w alpha m|."""
+    deck = SWING.format(cards="".join((*SPRING, *POINT)))
+    begin = deck.index("*STEP")
+    deck = (
+        deck[:begin]
+        + """*STEP
+*STEADY STATE DYNAMICS, DIRECT
+.6, .9, 4
+*GLOBAL DAMPING, ALPHA=.4, FIELD=ALL
+*CLOAD
+2, 1, 5.
+*END STEP
+"""
+    )
+    results = run(tmp_path, deck)
+    for number, frame in enumerate(results.frames):
+        if frame.increment:
+            w = 2.0 * math.pi * frame.time
+            wanted = 5.0 / abs(50.0 - MASS * w * w + 1j * w * 0.4 * MASS)
+            assert results.nodal("UA1", number)[1] == pytest.approx(wanted, rel=1e-6)

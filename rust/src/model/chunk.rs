@@ -14,7 +14,7 @@ use crate::materials::by_temperature::LawTable;
 /// Elements a chunk; large enough to hide a virtual call, small enough to color well.
 pub const CHUNK: usize = 512;
 /// Parts of the state of a chunk.
-pub const PARTS: usize = 5;
+pub const PARTS: usize = 6;
 
 /// How elements move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,7 +156,10 @@ pub trait Chunk: Send + Sync {
     fn elements(&self) -> &[u32];
     /// Nodes of all elements.
     fn nodes(&self) -> Vec<u32>;
-    /// Committed history, internal modes, carried velocities, initial strains and temperatures.
+    /// Forget all strain: the elements are as new in the shape that these displacements give them.
+    fn renew(&mut self, context: &Context<'_>);
+    /// Committed history, internal modes, carried velocities, initial strains, temperatures and
+    /// displacements without strain.
     fn state(&self) -> [&[f64]; PARTS];
     /// Members of the history of an element.
     fn members(&self) -> usize;

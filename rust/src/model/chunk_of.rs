@@ -37,6 +37,8 @@ pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
     pub(super) rates: Vec<f64>,
     /// Initial strain, `[p, 4]` strided; empty for none.
     pub(super) initial: Vec<f64>,
+    /// Displacements at which the elements have no strain, `[n, N, M]`; empty for none.
+    origin: Vec<f64>,
     /// Nodes of each element that carry no mass; empty for none.
     pub(super) massless: Vec<[bool; N]>,
     /// Factor on the mass of each element; empty for one.
@@ -128,6 +130,7 @@ where
             rates_old: vec![0.0; rates],
             rates: vec![0.0; rates],
             initial: Vec::new(),
+            origin: Vec::new(),
             massless: Vec::new(),
             mass_factors: Vec::new(),
             thickness,
@@ -197,6 +200,20 @@ where
                     #[inline(always)]
                     |l| context.u[dof[l] + i],
                 );
+            }
+        }
+        if !self.origin.is_empty() {
+            for a in 0..N {
+                for i in 0..M {
+                    let start = T::from_lanes(
+                        #[inline(always)]
+                        |l| self.origin[((first + l).min(last) * N + a) * M + i],
+                    );
+                    u[a][i] = u[a][i] - start;
+                    if i < 2 && context.nlgeom {
+                        x[a][i] = x[a][i] + start;
+                    }
+                }
             }
         }
         (x, u)
@@ -287,6 +304,20 @@ where
             }
         }
     }
+    fn renew(&mut self, context: &Context<'_>) {
+        self.origin.clear();
+        for nodes in &self.nodes {
+            for &node in nodes {
+                let start = context.dofs.start[node as usize] as usize;
+                self.origin.extend_from_slice(&context.u[start..start + M]);
+            }
+        }
+        for part in [&mut self.old, &mut self.new, &mut self.alpha_old, &mut self.alpha] {
+            part.fill(0.0);
+        }
+        self.initial.clear();
+        self.evaluated = false;
+    }
     fn set_temperatures(&mut self, values: &[f64]) -> Result<(), String> {
         let n_points = self.shared.section.points.len();
         self.temperatures.clear();
@@ -357,7 +388,8 @@ where
         self.nodes.as_flattened().to_vec()
     }
     fn state(&self) -> [&[f64]; PARTS] {
-        [&self.old, &self.alpha_old, &self.rates_old, &self.initial, &self.temperatures]
+        let [old, alpha, rates] = [&self.old, &self.alpha_old, &self.rates_old];
+        [old, alpha, rates, &self.initial, &self.temperatures, &self.origin]
     }
     fn members(&self) -> usize {
         self.n_state()
@@ -381,7 +413,7 @@ where
         self.new.copy_from_slice(&self.old);
         self.evaluated = false;
     }
-    fn restore(&mut self, [old, alpha, rates, initial, heat]: [&[f64]; PARTS]) -> bool {
+    fn restore(&mut self, [old, alpha, rates, initial, heat, origin]: [&[f64]; PARTS]) -> bool {
         let n_points = self.shared.section.points.len();
         let most = 4 * n_points * self.stride;
         let wanted = if self.shared.table.is_some() { n_points * self.nodes.len() } else { 0 };
@@ -389,7 +421,8 @@ where
             && alpha.len() == self.alpha_old.len()
             && rates.len() == self.rates_old.len()
             && (initial.is_empty() || initial.len() == most)
-            && heat.len() == wanted;
+            && heat.len() == wanted
+            && (origin.is_empty() || origin.len() == N * M * self.nodes.len());
         if !fits {
             return false;
         }
@@ -404,6 +437,7 @@ where
         }
         self.initial = initial.to_vec();
         self.temperatures = heat.to_vec();
+        self.origin = origin.to_vec();
         self.evaluated = false;
         self.temper().is_ok()
     }

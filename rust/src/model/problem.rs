@@ -43,6 +43,8 @@ pub struct Problem {
     conserving_tuner: ThreadAutotuner,
     body_tuner: ThreadAutotuner,
     active: Vec<bool>,
+    /// Blocks that are no part of the structure for the time being; empty for none.
+    removed: Vec<bool>,
 }
 
 impl Problem {
@@ -87,6 +89,7 @@ impl Problem {
             conserving_tuner: ThreadAutotuner::default(),
             body_tuner: ThreadAutotuner::default(),
             active: Vec::new(),
+            removed: Vec::new(),
         })
     }
 
@@ -122,6 +125,20 @@ impl Problem {
         self.active = active;
     }
 
+    /// Take these blocks out of the structure: they have no force, no mass and no values; empty for
+    /// none.
+    pub fn set_removed(&mut self, removed: Vec<bool>) {
+        self.removed = removed;
+    }
+
+    /// Let the elements of a block have no strain at displacements `u`, and no history.
+    pub fn renew(&mut self, block: usize, u: &[f64]) {
+        let context = Context::new(&self.x, &self.dofs, self.lanes, u);
+        for chunk in self.colors.iter_mut().flatten().filter(|c| c.block() == block) {
+            chunk.renew(&context);
+        }
+    }
+
     /// Internal force, its scale, and with a non-empty `values` the tangent's upper triangle.
     /// The arrays are overwritten.
     pub fn assemble(
@@ -140,15 +157,18 @@ impl Problem {
             ..Context::new(&self.x, &self.dofs, self.lanes, u)
         };
         let pool = self.pool_if_apart();
-        let (colors, active) = (&mut self.colors, &self.active);
+        let (colors, active, removed) = (&mut self.colors, &self.active, &self.removed);
         let work = |pool: bool| {
             for array in [&mut *force, &mut *scale, &mut *values] {
                 zero(array, pool);
             }
             let sink = Sink::new(force, scale, values);
             failures(colors, pool, &|c| {
-                let idle = active.get(c.block()) == Some(&false);
-                if idle { Vec::new() } else { c.assemble(&context, &sink) }
+                if is_idle(c.block(), active, removed) {
+                    Vec::new()
+                } else {
+                    c.assemble(&context, &sink)
+                }
             })
         };
         let mut failed = share(&mut self.assemble_tuner, pool.as_deref(), &self.blocks, work);
@@ -168,9 +188,9 @@ impl Problem {
         let tangent = !values.is_empty();
         let context = Context { tangent, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
         let sink = Sink::new(force, scale, values);
-        let (colors, active) = (&self.colors, &self.active);
+        let (colors, active, removed) = (&self.colors, &self.active, &self.removed);
         let evaluate = |c: &dyn Chunk| {
-            if active.get(c.block()) != Some(&false) {
+            if !is_idle(c.block(), active, removed) {
                 c.inertia(&context, motion, &sink);
             }
         };
@@ -202,8 +222,14 @@ impl Problem {
         let sink = Sink::new(force, scale, values);
         let alone = Sink::new(internal, &mut unused, &mut []);
         let pool = self.pool_if_apart();
-        let colors = &mut self.colors;
-        let evaluate = |c: &mut dyn Chunk| c.conserving(&context, between, &sink, &alone);
+        let (colors, removed) = (&mut self.colors, &self.removed);
+        let evaluate = |c: &mut dyn Chunk| {
+            if is_idle(c.block(), &[], removed) {
+                Vec::new()
+            } else {
+                c.conserving(&context, between, &sink, &alone)
+            }
+        };
         let work = |pool: bool| failures(colors, pool, &evaluate);
         let failed = share(&mut self.conserving_tuner, pool.as_deref(), &self.blocks, work);
         if failed.is_empty() { Ok(()) } else { Err(Failed(failed)) }
@@ -228,6 +254,9 @@ impl Problem {
     ) -> Result<Vec<f64>, String> {
         let own = self.blocks.get(block).ok_or_else(|| format!("no block {block}"))?;
         let mut each = vec![0.0; own.n_elements];
+        if is_idle(block, &[], &self.removed) {
+            return Ok(each);
+        }
         let context = Context::new(&self.x, &self.dofs, self.lanes, u);
         let mut sums = Momenta::default();
         for chunk in self.colors.iter().flatten().filter(|c| c.block() == block) {
@@ -240,7 +269,8 @@ impl Problem {
     pub fn momenta(&self, u: &[f64], v: &[f64], kind: MassKind, carried: bool) -> Momenta {
         let context = Context::new(&self.x, &self.dofs, self.lanes, u);
         let mut sums = Momenta::default();
-        for chunk in self.colors.iter().flatten() {
+        let there = |c: &&Box<dyn Chunk>| !is_idle(c.block(), &[], &self.removed);
+        for chunk in self.colors.iter().flatten().filter(there) {
             chunk.momenta(&context, v, kind, carried, &mut sums, &mut []);
         }
         sums
@@ -362,7 +392,12 @@ impl Problem {
         let tangent = !values.is_empty();
         let context = Context { tangent, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
         let sink = Sink::new(force, &mut scale, values);
-        let evaluate = |c: &dyn Chunk| c.body_force(&context, load, &masks[c.block()], &sink);
+        let removed = &self.removed;
+        let evaluate = |c: &dyn Chunk| {
+            if !is_idle(c.block(), &[], removed) {
+                c.body_force(&context, load, &masks[c.block()], &sink);
+            }
+        };
         let pool = self.pool_if_apart();
         let colors = &self.colors;
         let work = |pool: bool| each_chunk(colors, pool, &evaluate);
@@ -437,7 +472,7 @@ impl Problem {
 
     /// Values at the points of every block, after the time of the clock since the committed state.
     pub fn recover(&mut self, u: &[f64], nlgeom: bool) -> Vec<Fields> {
-        let (blocks, pool) = (&self.blocks, self.pool());
+        let (blocks, removed, pool) = (&self.blocks, &self.removed, self.pool());
         let empty = |block: usize, n: usize| {
             let b = &blocks[block];
             let n_dofs = b.facts.n_nodes * b.facts.dofs_per_node;
@@ -448,6 +483,10 @@ impl Problem {
         let evaluate = |chunk: &&dyn Chunk| {
             let mut part = empty(chunk.block(), chunk.elements().len());
             chunk.recover(&context, &mut part);
+            if is_idle(chunk.block(), &[], removed) {
+                let points = std::mem::take(&mut part.points);
+                part = Fields { points, ..empty(chunk.block(), chunk.elements().len()) };
+            }
             part
         };
         let chunks: Vec<&dyn Chunk> = self.colors.iter().flatten().map(AsRef::as_ref).collect();
@@ -493,6 +532,11 @@ impl Problem {
         }
         self.fixed.mask(values);
     }
+}
+
+/// Whether a block takes no part: it is not `active`, or `removed`; both are empty for all and none.
+fn is_idle(block: usize, active: &[bool], removed: &[bool]) -> bool {
+    active.get(block) == Some(&false) || removed.get(block) == Some(&true)
 }
 
 /// Evaluate all chunks, those of one color side by side if `parallel`.

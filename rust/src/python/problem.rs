@@ -284,6 +284,17 @@ impl PyProblem {
         self.inner.set_mass_factors(block, factors.as_slice()?).map_err(value_error)
     }
 
+    /// Take blocks out of the structure; empty for none.
+    fn set_removed(&mut self, removed: Vec<bool>) {
+        self.inner.set_removed(removed);
+    }
+
+    /// Let the elements of a block have no strain at displacements ``u``, shape (n_dofs,).
+    fn renew(&mut self, block: usize, u: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+        self.inner.renew(block, u.as_slice()?);
+        Ok(())
+    }
+
     /// Make the trial history the committed one.
     fn commit(&mut self, py: Python<'_>) {
         let inner = &mut self.inner;

@@ -135,6 +135,18 @@ class DistributedLoads:
             self._replace(load)
         self.loads += [load for load in fresh if not _is_dead(load.item)]
 
+    def drop(self, removed: NDArray[np.bool_]) -> None:
+        """Forget loads on the edges of cells that are not in the structure, shape (n_cells,)."""
+        kept = []
+        for load in self.loads:
+            on = isinstance(load.item, EdgeLoad) and load.faces is not None
+            gone = removed[load.faces[:, 0]] if on and load.faces is not None else np.zeros(1, bool)
+            if not gone.any():
+                kept.append(load)
+            elif not gone.all():
+                kept.append(self._part(load, ~gone))
+        self.loads = kept
+
     # -- replacing ----------------------------------------------------------------------
 
     def _replace(self, new: DistributedLoad) -> None:

@@ -417,7 +417,8 @@ class Analysis:
                 f"step {number}: a motion in a rotating frame (centrifugal load) without Coriolis "
                 "forces; frequency steps with complex modes, modal and harmonic steps include them",
             )
-        if state.at is None or kinematics != (system.nlgeom, system.about_linear):
+        other = kinematics != (system.nlgeom, system.about_linear) or bool(step.element_changes)
+        if state.at is None or other:
             state.at = system.evaluate(state.u, 0.0)
         assert state.energies is not None
         state.energies.begin(step, state.at.internal)

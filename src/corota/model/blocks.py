@@ -12,6 +12,7 @@ from corota.arrays import distinct
 from corota.errors import ModelError
 from corota.mesh.kinds import EDGES
 from corota.model import elements
+from corota.model.element_changes import groups_of_cells
 from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
@@ -128,6 +129,7 @@ def blocks_of(model: Model) -> list[BlockOfCells]:
             "add a section (*SOLID SECTION) for them"
         )
     blocks = []
+    group = groups_of_cells(mesh, model.steps)
     for offset, cells_of_kind in zip(mesh.offsets, mesh.cells, strict=False):
         owners = owner[offset : offset + len(cells_of_kind)]
         for s in distinct(owners[owners >= 0]):
@@ -141,7 +143,9 @@ def blocks_of(model: Model) -> list[BlockOfCells]:
                     "each kind, as element={'quad4': 'Q4I', 'tri3': 'OPT'}",
                     section.where,
                 )
-            blocks.append(BlockOfCells(section, rows + offset, cells_of_kind.nodes[rows]))
+            for alike in distinct(group[rows + offset]):
+                own = rows[group[rows + offset] == alike]
+                blocks.append(BlockOfCells(section, own + offset, cells_of_kind.nodes[own]))
     if not blocks:
         raise ModelError("the model has no elements; add cells and a section for them")
     _join_edges(blocks, mesh.n_nodes)

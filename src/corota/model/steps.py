@@ -9,9 +9,12 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
+import numpy as np
+
 from corota.arrays import distinct
 from corota.display import Brief
 from corota.errors import InputError, number
+from corota.model.element_changes import ElementChange
 from corota.model.loading import Loading
 from corota.model.loads import LOAD_KINDS, check_loads, check_supports
 from corota.model.paths import ArcLength, DisplacementControl
@@ -21,7 +24,6 @@ from corota.names import choose
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     from corota.errors import Location
@@ -136,6 +138,8 @@ class Step(Brief, Loading, Settings):
         Remove the loads of earlier steps: all, or those of some kinds.
     ended : set of {"force", "distributed", "temperature"}
         Kinds of loads that end, those of the model too; see :meth:`remove`.
+    element_changes : list of ElementChange
+        Elements that leave the structure or join it; see :meth:`remove_elements`.
     outputs : list of Output
     restart : int
         Keep a checkpoint every n increments and at the end of the step; 0 for none.
@@ -153,6 +157,7 @@ class Step(Brief, Loading, Settings):
     new_supports: bool = False
     new_loads: bool | Collection[LoadKind] = False
     ended: set[LoadKind] = field(default_factory=set)
+    element_changes: list[ElementChange] = field(default_factory=list)
     outputs: list[Output] = field(default_factory=list)
     restart: int = 0
     name: str = ""
@@ -180,6 +185,31 @@ class Step(Brief, Loading, Settings):
             self.first_increment, 1e-6 * self.period
         )
         self._control_numbers()
+
+    def remove_elements(self, cells: str | ArrayLike) -> None:
+        """Take elements out of the structure; what they carried fades out over the step.
+
+        Loads on them end too, and nodes without another element stay where they are.
+
+        Parameters
+        ----------
+        cells : str or array_like of int
+            Cell set, or cell indices.
+        """
+        self.element_changes.append(ElementChange(_cells_of(cells)))
+
+    def add_elements(self, cells: str | ArrayLike, *, strain_free: bool = True) -> None:
+        """Put elements back that an earlier step removed.
+
+        Parameters
+        ----------
+        cells : str or array_like of int
+            Cell set, or cell indices.
+        strain_free : bool
+            Whether they are as new in the shape that their nodes give them; otherwise their
+            stress, as if they had always been there, grows over the step.
+        """
+        self.element_changes.append(ElementChange(_cells_of(cells), True, strain_free))
 
     def _control_numbers(self) -> None:
         """Check tolerances and counts of the procedures that have them.
@@ -274,6 +304,10 @@ class Step(Brief, Loading, Settings):
     def renews(self, kind: LoadKind) -> bool:
         """Whether the step removes earlier loads of a kind."""
         return not isinstance(self.new_loads, bool) and kind in self.new_loads
+
+
+def _cells_of(cells: str | ArrayLike) -> str | NDArray[np.int64]:
+    return cells if isinstance(cells, str) else np.asarray(cells, np.int64)
 
 
 @dataclass(kw_only=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.arrays import distinct
+from corota.model.element_changes import groups_of_cells
 from corota.results.table import COMPONENTS, INVARIANTS, POSITIVE
 from corota.results.variables import STORED, averaged_value, invariant, stored_as
 
@@ -91,7 +92,9 @@ def section_of_cells(model: Model) -> Ints:
                 group[:] = kinds.index(key)
         else:
             group[where] = kinds.index(key)
-    return group
+    changes = groups_of_cells(model.mesh, model.steps)
+    # Cells that are removed have no values to average with.
+    return np.where(group < 0, -1, group * (1 + int(changes.max(initial=0))) + changes)
 
 
 def nodes_of_groups(

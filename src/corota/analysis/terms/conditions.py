@@ -18,6 +18,7 @@ import numpy as np
 
 from corota.analysis.distributed import DistributedLoads
 from corota.analysis.distributed_forces import EMPTY, END_POINT, LoadSum
+from corota.analysis.terms.element_changes import ElementChanges
 from corota.analysis.terms.load_factors import LoadFactors
 from corota.analysis.terms.nodal_forces import NodalForces
 from corota.analysis.terms.redistribution import massless_nodes, set_moving_mass
@@ -106,6 +107,7 @@ class Conditions(Term):
         self.distributed = DistributedLoads(system)
         self.temperatures = Temperatures(system, self.factors)
         self.fading = np.zeros(system.n_dofs)
+        self.changes = ElementChanges(system)
         self.end_time = 1.0
         self.harmonic: Conditions | None = None
         self._loaded = False  # whether the model's own loads already act
@@ -131,6 +133,8 @@ class Conditions(Term):
         self.fading = np.zeros(self.system.n_dofs)
         if not first:
             self._carry()
+        self.changes.check(step)
+        self.supports.constrained[self.changes.held] = False
         constrained_before = self.constrained.copy()
         self.supports.carry(u)
         if step.new_supports:
@@ -156,6 +160,8 @@ class Conditions(Term):
             released = constrained_before & ~self.constrained
             self.fading[released] = reaction[released]
         self._known = {}
+        if step.element_changes or self.changes.removed.any():
+            self._change_elements(step, u)
         changing = self.harmonic if harmonic else self
         if step.procedure in LINEAR and changing is not None and changing.temperatures.vary():
             raise UnsupportedError(
@@ -163,6 +169,19 @@ class Conditions(Term):
                 "dynamic step before",
                 step.where,
             )
+
+    def _change_elements(self, step: Step, u: Floats) -> None:
+        """Remove and add elements; what they carried and their loads fade out over the step."""
+        changes = self.changes
+        begin = self.external(0.0, u)[0] - changes.force(u)
+        changes.change(step, u)
+        self.distributed.drop(changes.removed)
+        self.set_mass(self.distributed.mass)
+        if step.element_changes:
+            self.fading = self.fading + begin - self.external(0.0, u)[0] + changes.force(u)
+            self._known = {}
+        changes.held = changes.bare() & ~self.constrained
+        self.supports.hold(changes.held, u)
 
     def _begin_harmonic(self, step: Step, supports: list[Fixed]) -> None:
         """Start a harmonic step: its amplitudes, and those of harmonic steps before it.

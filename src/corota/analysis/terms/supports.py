@@ -94,6 +94,12 @@ class Supports:
             value = self.history.begin[dofs] if item.keep else item.value
             self.history.set(dofs, value, self.factors.index(item.amplitude, item.where))
 
+    def hold(self, dofs: NDArray[np.bool_], u: Floats) -> None:
+        """Let dofs stay at a displacement, shape (n_dofs,)."""
+        places = np.flatnonzero(dofs)
+        self.constrained[places] = True
+        self.history.set(places, u[places], 0)
+
     def _refuse_off_axis(self, item: Fixed, dofs: NDArray[np.int64]) -> None:
         """Refuse to move what is guided along the axis of a ring."""
         if item.value == 0.0:

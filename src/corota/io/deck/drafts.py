@@ -257,6 +257,9 @@ class StepDraft:
     said: set[str] = field(default_factory=set)
     #: Motions of all supports in a direction.
     base_motions: list[Draft] = field(default_factory=list)
+    #: Lines of ``*MODEL CHANGE, TYPE=ELEMENT``; ``index`` is 1 where they join without strain, 2
+    #: where they join with it, 0 where they leave.
+    element_changes: list[Draft] = field(default_factory=list)
     outputs: list[Output] = field(default_factory=list)
     frequency: int = 1
     #: Increments between checkpoints that are kept, 0 for none.

@@ -220,7 +220,8 @@ _TABLE: dict[str, Keyword] = {
         card("dynamic.steady_state"), "DIRECT", "SOLVER FREQUENCYSCALE INTERVAL FRICTIONDAMPING"
     ),
     "MODAL DAMPING": Keyword(card("dynamic.modal_damping"), "RAYLEIGH VISCOUS DEFINITION", "MODAL"),
-    "DAMPING": Keyword(card("dynamic.damping"), "ALPHA BETA", place="model"),
+    "DAMPING": Keyword(card("dynamic.damping"), "ALPHA BETA"),
+    "GLOBAL DAMPING": Keyword(card("dynamic.global_damping"), "ALPHA BETA", "FIELD"),
     "MASS": Keyword(card("attachments.mass"), "ELSET", place="model"),
     "ROTARY INERTIA": Keyword(card("attachments.rotary_inertia"), "ELSET", place="model"),
     "NONSTRUCTURAL MASS": Keyword(
@@ -321,7 +322,7 @@ _TABLE: dict[str, Keyword] = {
         "SLIPTOLERANCE LAGRANGE ELASTICSLIP SHEARTRACTIONSLOPE",
     ),
     "CHANGE FRICTION": Keyword(card("contact.change_friction"), "INTERACTION RESET RAMP"),
-    "MODEL CHANGE": Keyword(card("contact.model_change"), "TYPE ADD REMOVE"),
+    "MODEL CHANGE": Keyword(card("contact.model_change"), "TYPE ADD REMOVE ACTIVATE"),
     "CLEARANCE": Keyword(card("contact.clearance"), "SLAVE MASTER VALUE", place="model"),
     "TIE": Keyword(
         card("contact.tie"),

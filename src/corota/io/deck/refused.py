@@ -22,6 +22,9 @@ IGNORED: dict[str, str] = {
     "SOLUTIONTECHNIQUE": "Newton's method has the exact tangent",
     "USEROUTPUTVARIABLES": "no user subroutine is called",
     "VISCOSITY": "it belongs to fluids",
+    "CONTOURINTEGRAL": "contour integrals are not computed; displacements and stresses are",
+    "FAILSTRESS": "failure measures are not computed; stresses are",
+    "FAILSTRAIN": "failure measures are not computed; strains are",
     **dict.fromkeys(
         (
             "CONDUCTIVITY",
@@ -215,6 +218,8 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("DAMPING", "STRUCTURAL"): "damping is by ALPHA and BETA, and *MODAL DAMPING",
     ("MASS", "ALPHA"): "damping is by ALPHA of *DAMPING of materials, and *DASHPOT",
     ("PLASTIC", "SCALESTRESS"): "give the scaled yield stresses",
+    ("GLOBALDAMPING", "STRUCTURAL"): "damping is by ALPHA and BETA, and *MODAL DAMPING",
+    ("MODALDAMPING", "STRUCTURAL"): "give fractions of critical damping: half of it at resonance",
     ("MASS", "TYPE"): "a point has the same mass in both directions",
     ("MODALDYNAMIC", "CONTINUE"): "the motion goes on from the step before; leave it out",
     ("CLOAD", "SECTOR"): "cyclic symmetry is not part of this version",

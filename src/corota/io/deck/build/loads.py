@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 base_motion = lazy("corota.io.deck.build.base_motion:base_motion")
 build_temperature = lazy("corota.io.deck.cards.thermal:build_temperature")
 
+#: Beams whose second direction Abaqus defines to lie in the plane, to the left of their first.
+PLANAR_BEAMS = {"B21", "B22", "B23", "PIPE21"}
+
 
 class LoadBuilder:
     """Makes supports and loads.
@@ -93,11 +96,49 @@ class LoadBuilder:
             return list(self._shear(draft))
         if draft.kind in ("volume", "line"):
             return list(self._volume_force(draft))
+        if draft.kind == "pressure" and draft.index == 1 and self.deck.dialect == "abaqus":
+            beams = self._planar_beams(draft)
+            if beams is not None:
+                return list(self._across(draft, beams))
         load = self._load(draft)
         scaled = isinstance(load, BodyForce) and (self.targets.mass_factor != 1.0).any()
         if scaled:
             return list(self._weights(draft, cast("BodyForce", load)))
         return [] if load is None else [load]
+
+    def _planar_beams(self, draft: Draft) -> Ints | None:
+        """Cells that a load names, if all are beams of the plane in Abaqus; else None."""
+        found = self.targets.cells_of(draft)
+        if found is None or not len(found.cells):
+            return None
+        types = {str(self.meshes.types[i]) for i in self.meshes.cell_type[found.cells]}
+        return found.cells if types <= PLANAR_BEAMS else None
+
+    def _across(self, draft: Draft, cells: Ints) -> Iterator[Load]:
+        """``P2`` of Abaqus: force per length across beams, to the left of their direction."""
+        amplitude = self.targets.amplitude(draft)
+        if amplitude is None:
+            return
+        if any(step.nlgeom for step in self.deck.steps):
+            self.deck.row_error(
+                draft.card,
+                draft.row,
+                1,
+                "P2 of beams turns with them under NLGEOM, which is not part of this version",
+                "give PX and PY, forces per length in global directions",
+            )
+            return
+        places = [self.mesh.locate(int(cell)) for cell in cells]
+        ends = np.array([self.mesh.cells[block].nodes[row][:2] for block, row in places])
+        along = self.mesh.points[ends[:, 1]] - self.mesh.points[ends[:, 0]]
+        left = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        left /= np.hypot(left[:, :1], left[:, 1:])
+        ways, which = np.unique(left.round(12), axis=0, return_inverse=True)
+        for number, (x, y) in enumerate(ways.tolist()):
+            mine = cells[which.reshape(-1) == number]
+            value = (draft.value[0] * x, draft.value[0] * y)
+            where = draft.row.where
+            yield BodyForce(mine, "line", value, amplitude, where, direction=(x, y))
 
     def _weights(self, draft: Draft, load: BodyForce) -> Iterator[Load]:
         """Gravity of cells with a scaled mass: their weight is that of the mass before."""

@@ -16,6 +16,7 @@ from corota.io.deck.build.targets import Targets
 from corota.io.deck.deck import nearest
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
+from corota.model.element_changes import ElementChange
 from corota.model.loads import InitialVelocity
 from corota.model.model import Model
 from corota.model.steps import Buckle, Static, SteadyState
@@ -177,6 +178,7 @@ class ModelBuilder:
             supports += base_supports(deck, self.model, draft, supports)
         ahead = [d for d in draft.loads if id(d) not in behind]
         loads = [load for item in ahead for load in self.loads.loads(item)]
+        changes = [found for item in draft.element_changes if (found := self._change(item))]
         for request in draft.outputs:
             self._check_target(request.kind, request.where, draft)
         first, period, least, most = draft.times
@@ -204,6 +206,7 @@ class ModelBuilder:
                 loads=loads,
                 new_supports=draft.new_supports,
                 new_loads=draft.new_loads,
+                element_changes=changes,
                 outputs=draft.outputs,
                 where=draft.card.where,
                 **options,
@@ -211,6 +214,18 @@ class ModelBuilder:
         except InputError as error:
             deck.error(draft.procedure, draft.procedure.where, error.message)
             return None
+
+    def _change(self, draft: Draft) -> ElementChange | None:
+        """Elements that leave the structure or join it."""
+        found = self.targets.cells_of(draft)
+        if found is None:
+            return None
+        if len(found.attached) or not len(found.cells):
+            text = f"{draft.target} holds no solid elements, trusses, beams or springs"
+            self.deck.row_error(draft.card, draft.row, 0, text)
+            return None
+        where = draft.row.where
+        return ElementChange(found.cells, draft.index > 0, draft.index < 2, where)
 
     def _drop_second_case(self, draft: StepDraft) -> None:
         """Supports of ``*BUCKLE`` for the modes (LOAD CASE=2), as CAE repeats them.

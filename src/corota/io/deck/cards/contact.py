@@ -10,14 +10,14 @@ import numpy as np
 
 from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
-from corota.io.deck.drafts import InteractionDraft, PairDraft
+from corota.io.deck.drafts import Draft, InteractionDraft, PairDraft
 from corota.io.deck.lexer import key
 from corota.model.contact import MOST_FRICTION
 
 if TYPE_CHECKING:
     from corota.errors import Location
     from corota.io.deck.deck import Deck
-    from corota.io.deck.drafts import Surface
+    from corota.io.deck.drafts import StepDraft, Surface
     from corota.io.deck.lexer import Card, Row
 
 #: Types of contact pairs of CalculiX and Abaqus, and the discretization here.
@@ -312,27 +312,43 @@ def _rub(deck: Deck, into: InteractionDraft, mu: float) -> None:
 
 
 def model_change(deck: Deck, card: Card) -> None:
-    """``*MODEL CHANGE, TYPE=CONTACT PAIR, ADD or REMOVE``: slave, master."""
+    """``*MODEL CHANGE, TYPE=CONTACT PAIR or ELEMENT, ADD or REMOVE``: pairs, or elements."""
     kind = deck.choice(card, "TYPE", ("CONTACTPAIR", "ELEMENT"), "ELEMENT")
-    if kind == "ELEMENT":
-        deck.error(
-            card,
-            card.where,
-            "elements are not removed and added in steps",
-            hint="TYPE=CONTACT PAIR is supported; solve the parts in models of their own",
+    added, removed = (card.has(name) for name in ("ADD", "REMOVE"))
+    if card.has("ACTIVATE"):
+        deck.note(
+            f"{card.where}: {card.spelled}, ACTIVATE is ignored: nothing needs to be prepared"
         )
         return
-    added, removed = (card.has(name) for name in ("ADD", "REMOVE"))
     if added == removed:
         deck.error(card, card.where, "either ADD or REMOVE is expected")
         return
     if deck.step is None:
         deck.error(card, card.where, "the card belongs in a step")
         return
+    if kind == "ELEMENT":
+        _change_elements(deck, deck.step, card, added)
+        return
     for row in _pair_rows(deck, card):
         slave, master = row.get(0), row.get(1) or row.get(0)
         for pair in _named_pairs(deck, card, slave, master, True, row.where):
             pair.changes[len(deck.steps)] = added
+
+
+def _change_elements(deck: Deck, step: StepDraft, card: Card, added: bool) -> None:
+    """Lines of element numbers and sets that leave the structure or join it."""
+    ways = {"": 1, "STRAINFREE": 1, "WITHSTRAIN": 2}
+    way = key(card.value("ADD")) if added else ""
+    if way not in ways:
+        deck.error(card, card.at("ADD"), f"expected STRAIN FREE or WITH STRAIN, found {way}")
+        return
+    rows = list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: elements or element sets")
+    for row in rows:
+        for name in filter(None, row.fields):
+            change = Draft("cells", card, row, name, (), ways[way] if added else 0)
+            step.element_changes.append(change)
 
 
 def clearance(deck: Deck, card: Card) -> None:

@@ -284,12 +284,44 @@ def damping(deck: Deck, card: Card) -> None:
         deck.parameter_number(card, "ALPHA", 0.0, 0.0),
         deck.parameter_number(card, "BETA", 0.0, 0.0),
     )
+    if deck.step is not None:
+        _damp_from_here(deck, deck.step, card, value)
+        return
     owner: Deck | MaterialDraft = deck if deck.material is None else deck.material
     if owner.damping not in ((0.0, 0.0), value):
         what = "the model" if deck.material is None else f"material {deck.material.name}"
         deck.error(card, card.where, f"damping differs from that given before for {what}")
         return
     owner.damping = value
+
+
+def _damp_from_here(deck: Deck, now: StepDraft, card: Card, value: tuple[float, float]) -> None:
+    """Damp the whole model from a step on, as CalculiX does with a card in a step."""
+    if any(m.damping not in ((0.0, 0.0), value) for m in deck.materials.values()):
+        deck.error(card, card.where, "a material has its own *DAMPING: leave one of them out")
+        return
+    for material in deck.materials.values():
+        material.damping = (0.0, 0.0)
+    deck.damping = value
+    if "rayleigh" in now.options:
+        now.options["rayleigh"] = value
+
+
+def global_damping(deck: Deck, card: Card) -> None:
+    """``*GLOBAL DAMPING, ALPHA=, BETA=``: Rayleigh damping of a linear dynamic step."""
+    deck.no_rows(card)
+    now = open_step(deck, card)
+    if now is None:
+        return
+    if now.make not in (ModalDynamic, SteadyState):
+        text = "it belongs after *MODAL DYNAMIC or *STEADY STATE DYNAMICS in the same step"
+        deck.error(card, card.where, text)
+        return
+    deck.choice(card, "FIELD", ("ALL", "MECHANICAL"), "ALL")
+    now.options["rayleigh"] = (
+        deck.parameter_number(card, "ALPHA", 0.0, 0.0),
+        deck.parameter_number(card, "BETA", 0.0, 0.0),
+    )
 
 
 def initial_conditions(deck: Deck, card: Card) -> None:
