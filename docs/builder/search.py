@@ -15,7 +15,7 @@ WORDS = {
     "contact": "friction, coulomb, mortar, rigid curve, tie, penalty",
     "impact": "drop, crash, bounce",
     "paths": "arc length, riks, snap-through, limit point, bifurcation, limit load",
-    "plasticity": "yield, yield stress, hardening, mises, creep, von mises, springback",
+    "plasticity": "yield, yield stress, hardening, mises, creep, von mises",
     "dynamics": "frequency, natural frequency, natural frequencies, eigenfrequency, modes, "
     "damping, newmark, harmonic response",
     "thermal": "thermal, temperature, thermal expansion, heat",
@@ -40,6 +40,9 @@ WORDS = {
     "howto/joints": "pivot, notch, parallelogram, cosine beam",
     "howto/tolerances": "scatter, yield of parts, sensitivity",
     "howto/seal": "gasket, tube",
+    "howto/press_fit": "press fit, shrink fit, interference, interference fit, overlap, hub, shaft",
+    "howto/steps": "springback, spring back, release a support, let go, remove a load, unload, "
+    "several steps, step sequence, forming",
     "howto/o_ring": "o-ring, cord, groove",
     "howto/living_hinge": "living hinge, fold",
     "howto/thermal_actuator": "chevron, mems, actuator",

@@ -13,15 +13,14 @@
 
 use super::hardening::{BackStress, Isotropic};
 use super::material::{Material, Plane, PointState, Response, TensorOutput, broadcast};
-use super::mises::MAX_BACK;
+use super::mises::{MAX_BACK, ROUNDING};
 use crate::base::Real;
 use crate::base::small::Mat;
 
-/// Iterations of the scalar equation, relative error after which one more step is exact, and the
-/// excess over the yield stress that is rounding: as in [`super::mises`].
+/// Iterations of the scalar equation, and relative error after which one more step is exact: as
+/// in [`super::mises`].
 const MAX_ITERATIONS: usize = 80;
 const TOLERANCE: f64 = 1e-12;
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Members of the state: plastic strain 11, 22, 12 (engineering), equivalent plastic strain, work,
 /// back-stresses 11, 22, 12.
 const EQUIVALENT: usize = 3;

@@ -29,9 +29,10 @@ const MAX_ITERATIONS: usize = 80;
 /// round-off (its error is the square of this).
 const TOLERANCE: f64 = 1e-12;
 /// Excess over the yield stress, relative to the stresses it is the difference of, that is
-/// rounding. A committed plastic state lies on the yield surface up to that; rounding must not
-/// choose between the tangents there, and the elastic one is taken.
-const ROUNDING: f64 = 32.0 * f64::EPSILON;
+/// rounding. A committed plastic state lies on the yield surface up to that, and up to the last
+/// step of the modes of an element; neither must choose between the tangents there, and the
+/// elastic one is taken.
+pub(super) const ROUNDING: f64 = 1e-9;
 /// Step of the equivalent plastic strain that is nothing: a stress that makes less is elastic.
 pub const LEAST_STEP: f64 = 1e-30;
 /// Longest change of the logarithm of a step.

@@ -12,6 +12,7 @@ from corota.analysis.terms.linearized import Linearized
 from corota.arrays import distinct
 from corota.errors import InputError, ModelError, SingularError
 from corota.model.stages import FATIGUE
+from corota.results.averaging import Averaging, section_of_cells
 from corota.results.body_motion import BodyMotion, fit_rigid_motion
 from corota.results.extremes import WIDTH, row_of
 from corota.results.measures import StagePath, measure_values
@@ -44,6 +45,8 @@ class StageRecorder:
     def __init__(self, system: System, model: Model) -> None:
         self.paths: dict[str, StagePath] = {}
         self._bodies: dict[str, tuple[_Body, _Body | None]] = {}
+        #: Nodal averages, in which margins see the surface that the points stay away from.
+        self._averaging = Averaging(model.mesh, section_of_cells(model))
         for stage in model.stages:
             _check(stage, model)
             base = None if stage.against is None else _Body(system, stage, stage.against)
@@ -94,9 +97,20 @@ class StageRecorder:
             force[:2] = turn.T @ force[:2]
             matrix[:2] = turn.T @ matrix[:2]
             matrix[:, :2] = matrix[:, :2] @ turn
-            path.add(motion, force, matrix, free, _utilization(stage, frame, system))
+            path.add(motion, force, matrix, free, self._utilization(stage, frame))
             values = measure_values(path)
             frame.scalars |= {f"{stage.name}: {name}": value for name, value in values.items()}
+
+    def _utilization(self, stage: Stage, frame: Frame) -> Floats:
+        """Largest share of an allowable that is used: share, element, x, y; NaN without one."""
+        used = np.full(4, np.nan)
+        labels = self._averaging.mesh.cell_labels
+        for name, limit in stage.allowable.items():
+            for value, cell, _, x, y in _candidates(frame, self._averaging, name):
+                share = _goodman(value, *limit) if name == FATIGUE else abs(value) / float(limit)
+                if not share <= used[0]:
+                    used = np.array([share, labels[int(cell)], x, y])
+        return used
 
 
 class _Body:
@@ -270,21 +284,11 @@ def _check(stage: Stage, model: Model) -> None:
             )
 
 
-def _utilization(stage: Stage, frame: Frame, system: System) -> Floats:
-    """Largest share of an allowable that is used: share, element, x, y; NaN without one."""
-    used = np.full(4, np.nan)
-    labels = system.model.mesh.cell_labels
-    for name, limit in stage.allowable.items():
-        for row in _candidates(frame, name):
-            value, cell, _, x, y = row
-            share = _goodman(value, *limit) if name == FATIGUE else abs(value) / float(limit)
-            if not share <= used[0]:
-                used = np.array([share, labels[int(cell)], x, y])
-    return used
+def _candidates(frame: Frame, averaging: Averaging, name: str) -> list[Floats]:
+    """Extremes of a variable at points and nodes, for fatigue those of principal stresses.
 
-
-def _candidates(frame: Frame, name: str) -> list[Floats]:
-    """Extremes of a variable at the points of a frame, of fatigue those of principal stresses."""
+    Each is value, cell, point (-1 of a nodal value), x, y.
+    """
     found = []
     if name == "MISES" and frame.H is not None:
         name = "MISESA"  # at resonance the stress of the instant of the largest load vanishes
@@ -292,6 +296,9 @@ def _candidates(frame: Frame, name: str) -> list[Floats]:
         row = row_of(frame, variable)
         if row is not None:
             found += [row[:WIDTH], row[WIDTH:]]
+        for value, cell, node in averaging.extremes(frame.fields or [], variable):
+            place = averaging.mesh.points[node] + frame.U[node]
+            found.append(np.array([value, cell, -1.0, *place]))
     return found
 
 

@@ -135,6 +135,9 @@ def _unused(model: Model, loads: list[AppliedLoad]) -> list[Diagnostic]:
         use(start.nodes)
     for stress in model.initial_stresses:
         use(stress.cells)
+    for stage in model.stages:
+        use(stage.nodes)
+        use(stage.against)
     for step in model.steps:
         for request in step.outputs:
             use(request.where)

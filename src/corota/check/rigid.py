@@ -12,6 +12,7 @@ from corota.analysis.free_motion import plain
 from corota.arrays import distinct
 from corota.errors import Diagnostic
 from corota.mesh.parts import part_of_cells, stiff_part_of_cells
+from corota.model.released import without_releases
 from corota.model.rotations import rotating_nodes
 
 if TYPE_CHECKING:
@@ -53,9 +54,11 @@ def _held(model: Model, rotating: NDArray[np.bool_]) -> list[Floats]:
     base = np.zeros((model.mesh.n_nodes, 3), bool)
     _hold(model, base, model.supports)
     now, found = base.copy(), []
-    for step in model.steps:
+    same, steps = without_releases(model, model.steps)
+    for step in steps:
         if step.new_supports:
-            now = base.copy()
+            now[:] = False
+            _hold(model, now, same.supports)
         _hold(model, now, step.supports)
         found.append(now.copy())
     found = found or [base]

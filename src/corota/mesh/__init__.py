@@ -7,7 +7,6 @@ Names are imported at first use: a mesh that is read from a deck needs no genera
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from corota.lazy import lazy
 from corota.mesh.assembly import add_node, assembly  # the module has the name of its function
 
 if TYPE_CHECKING:
@@ -18,10 +17,9 @@ if TYPE_CHECKING:
     from corota.mesh.kinds import EDGES, N_NODES
     from corota.mesh.random_fields import random_field
 
-# A convenience: a function of a higher layer, which loads at its first call.
-outline = lazy("corota.outline.mesher:outline")
+    outline: Any
 
-#: Module of each name.
+#: Module of each name; that of `outline` is of a higher layer.
 _HOMES = {
     "EDGES": "kinds",
     "N_NODES": "kinds",
@@ -33,6 +31,7 @@ _HOMES = {
     "mapped": "generate",
     "merge": "change",
     "move": "change",
+    "outline": ".outline.mesher",
     "random_field": "random_fields",
     "read": "files",
     "rectangle": "generate",
@@ -67,7 +66,7 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'corota.mesh' has no attribute {name!r}")
-    value = getattr(import_module(f"corota.mesh.{_HOMES[name]}"), name)
+    value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
     globals()[name] = value
     return value
 

@@ -210,6 +210,7 @@ def _support(support: Fixed, step: int, model: Model) -> dict[str, Any]:
         "where": _named(support.nodes, "nodes"),
         "dof": support.dof,
         "value": support.value,
+        "free": support.free,
         "amplitude": support.amplitude,
         "nodes": _nodes(support.nodes, model),
     }

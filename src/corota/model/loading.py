@@ -57,6 +57,9 @@ class Loading:
     def _add_force(self, force: Force) -> None:
         self.loads.append(force)
 
+    def _fixes_nothing(self) -> None:
+        """What a call of :meth:`fix` without any direction means; nothing in a model."""
+
     def fix(
         self,
         nodes: str | ArrayLike,
@@ -110,6 +113,8 @@ class Loading:
                     f"free, or {other}=0.0 to fix both",
                     stacklevel=2,
                 )
+        if x is None and y is None and rotation in (None, False):
+            self._fixes_nothing()
         turn = 0.0 if rotation is True else None if rotation is False else rotation
         one = (x is FIXED) != (y is FIXED)
         for where in places:

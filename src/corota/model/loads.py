@@ -189,6 +189,8 @@ class Fixed(Brief):
         Fix the nodes at their position at the start of the step, whatever `value` is.
     implied : bool
         Whether the method ``fix`` fixed this direction with the other one, which alone was given.
+    free : bool
+        End the supports of this place and direction.
     """
 
     nodes: str | Ints
@@ -198,6 +200,7 @@ class Fixed(Brief):
     where: Location | None = field(default=None, compare=False, repr=False)
     keep: bool = False
     implied: bool = field(default=False, compare=False, repr=False)
+    free: bool = False
 
     def __post_init__(self) -> None:
         self.nodes = selected(self.nodes, "node", self.where)
@@ -208,6 +211,19 @@ class Fixed(Brief):
         self.dof = dof_index(self.dof, self.where)
         self.value = number(self.value, "a prescribed displacement", self.where)
         self.amplitude = _amplitude(self.amplitude, self.where)
+
+    @property
+    def place(self) -> str:
+        """The set, or the nodes in words."""
+        if isinstance(self.nodes, str):
+            return repr(self.nodes)
+        return (
+            f"{len(self.nodes)} nodes from index {self.nodes[0]}" if len(self.nodes) else "no node"
+        )
+
+    def same_dofs(self, other: Fixed) -> bool:
+        """Whether another support is at the same place in the same direction."""
+        return self.dof == other.dof and np.array_equal(self.nodes, other.nodes)
 
 
 @dataclass(repr=False)

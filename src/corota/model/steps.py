@@ -14,9 +14,10 @@ import numpy as np
 from corota.arrays import distinct
 from corota.display import Brief
 from corota.errors import InputError, number
+from corota.mesh import selection
 from corota.model.element_changes import ElementChange
 from corota.model.loading import Loading
-from corota.model.loads import LOAD_KINDS, check_loads, check_supports
+from corota.model.loads import LOAD_KINDS, Fixed, check_loads, check_supports, selected
 from corota.model.paths import ArcLength, DisplacementControl
 from corota.model.settings import Settings
 from corota.names import choose
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from corota.errors import Location
-    from corota.model.loads import Fixed, Load, LoadKind
+    from corota.model.loads import Load, LoadKind
 
     #: Share of critical damping of all modes, or (first, last, share) of ranges of modes.
     ModalDamping = float | Sequence[tuple[int, int, float]]
@@ -133,7 +134,8 @@ class Step(Brief, Loading, Settings):
     supports, loads : list
         Those of this step, beside the model's.
     new_supports : bool
-        Remove the supports of earlier steps (``OP=NEW``) instead of adding and modifying.
+        Remove the supports of earlier steps (``OP=NEW``) instead of adding and modifying; those
+        of the model begin anew. To release some of them see :meth:`release`.
     new_loads : bool or collection of {"force", "distributed", "temperature"}
         Remove the loads of earlier steps: all, or those of some kinds.
     ended : set of {"force", "distributed", "temperature"}
@@ -242,11 +244,54 @@ class Step(Brief, Loading, Settings):
             )
         self.new_loads = frozenset(wanted)
 
+    def _fixes_nothing(self) -> None:
+        raise InputError(
+            "fix(..., x=None, y=None) of a step fixes nothing; step.release(...) ends a support "
+            "of an earlier step or of the model",
+            self.where,
+        )
+
+    def release(
+        self, nodes: str | ArrayLike, *, x: bool = True, y: bool = True, rotation: bool = True
+    ) -> None:
+        """End a support of an earlier step or of the model.
+
+        Its reactions fade to zero over a static step, and at once in a dynamic one. Nodes that
+        another support fixes as well stay with that one.
+
+        Parameters
+        ----------
+        nodes : str, sequence of str or array_like of int
+            The place, as it was given to :meth:`fix`.
+        x, y, rotation : bool
+            Directions that become free.
+
+        Raises
+        ------
+        ModelError
+            In the run, if there is no support of this place and direction.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> step = ct.Static()
+        >>> step.release("clamp", x=False)
+        >>> [(s.nodes, s.dof, s.free) for s in step.supports]
+        [('clamp', 1, True), ('clamp', 2, True)]
+        """
+        if not (x or y or rotation):
+            raise InputError("release(...) releases no direction: x, y or rotation", self.where)
+        places = [selected(place, "node", None) for place in selection.names(nodes) or [nodes]]
+        for where in places:
+            for dof, free in enumerate((x, y, rotation)):
+                if free:
+                    self.supports.append(Fixed(where, dof, free=True))
+
     def remove(self, kind: str = "all", at: str | ArrayLike | None = None) -> None:
         """End loads of earlier steps and of the model, as loads of zero do.
 
         They fall to zero over a static step, and at once in a dynamic one. Loads that the step
-        itself defines act.
+        itself defines act. Supports are ended by :meth:`release`.
 
         Parameters
         ----------

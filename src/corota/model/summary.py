@@ -141,7 +141,8 @@ def support_lines(model: Model, supports: Iterable[Fixed]) -> list[str]:
         amplitude = f" by {support.amplitude}" if support.amplitude else ""
         direction = ("x", "y", "rotation")[support.dof]
         implied = f" (fixed as well: {direction}=None leaves it free)" * support.implied
-        found.setdefault(where, []).append(f"{direction} {support.value:g}{amplitude}{implied}")
+        value = "free" if support.free else f"{support.value:g}{amplitude}{implied}"
+        found.setdefault(where, []).append(f"{direction} {value}")
     lines = [f"  support {where}: {', '.join(what)}" for where, what in list(found.items())[:10]]
     return lines + ([f"  and {len(found) - 10} more supports"] if len(found) > 10 else [])
 

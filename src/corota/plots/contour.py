@@ -261,7 +261,9 @@ def label_bar(
     low, high = without_rounding(*limits)
     # Below a lying bar the power of ten of its ticks has a row of its own.
     lying = bar.orientation == "horizontal"
-    bar.set_label(f"{label}; {low:.5g} ... {high:.5g}{more}", labelpad=9.0 if lying else None)
+    # A standing bar is short: the range begins a line there.
+    label += "; " if lying else "\n"
+    bar.set_label(f"{label}{low:.5g} ... {high:.5g}{more}", labelpad=9.0 if lying else None)
     bar.outline.set_linewidth(0.5)
     bar.locator = MaxNLocator(7)
     bar.formatter.set_powerlimits((-3, 4))

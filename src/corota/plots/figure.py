@@ -208,6 +208,7 @@ def fit_texts(figure: Any) -> None:
     renderer = figure._get_renderer()
     margin = MARGIN * figure.dpi
     whole: dict[Any, str] = {}
+    at_edge = []
     for _ in range(2):  # broken texts change the layout
         _settle(figure)
         wide, high = figure.bbox.width, figure.bbox.height
@@ -219,6 +220,7 @@ def fit_texts(figure: Any) -> None:
             if title.get_text() and right == wide and wide - left < SHIFTED * wide:
                 title.set_x((margin - left) / box.width)
                 left = margin
+                at_edge.append(ax)
             along, up = 0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1)
             for text, space in (
                 (title, right - left - margin),
@@ -235,6 +237,10 @@ def fit_texts(figure: Any) -> None:
             inches = figure.get_size_inches()
             line = 1.25 * figure.axes[0]._left_title.get_fontsize() / 72.0
             figure.set_size_inches(inches[0], inches[1] + more * line)
+    _settle(figure)  # the last broken label may have moved the axes
+    for ax in at_edge:
+        box = ax.get_window_extent()
+        ax._left_title.set_x((margin - box.x0) / box.width)
 
 
 def _settle(figure: Any) -> None:

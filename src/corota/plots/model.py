@@ -193,6 +193,8 @@ def _supports(ax: Any, subject: Model, size: float) -> None:
     drawn: set[tuple[int, int]] = set()
     marker: str | int
     for support in held:
+        if support.free:
+            continue
         where = support.nodes
         nodes = mesh.node_indices(where)
         nodes = np.unique(nodes)

@@ -244,11 +244,48 @@ class Averaging:
 
     def values(self, fields: list[PointFields], name: str, section: int | None = None) -> Floats:
         """One component, invariant or scalar at the nodes, shape (n_nodes,)."""
-        stored, column = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0], -1))
-        values = self.nodal(fields, [stored], section)[stored]
-        if name in INVARIANTS:
-            return invariant(name, values)
-        return values if column < 0 else values[:, column]
+        stored, column = _stored(name)
+        return _pick(self.nodal(fields, [stored], section)[stored], name, column)
+
+    def extremes(self, fields: list[PointFields], name: str) -> list[tuple[float, int, int]]:
+        """Smallest and largest nodal value, each with a cell and the node; empty without values.
+
+        Parameters
+        ----------
+        fields : list of PointFields
+        name : str
+            Component, invariant or scalar.
+        """
+        stored, column = _stored(name)
+        fields = [b for b in fields if len(b.cells) and stored in b.values]
+        if not fields:
+            return []
+        group, node, averages = self.by_group(fields, [stored])
+        values = _pick(averages[stored], name, column)
+        found = []
+        for at in (int(values.argmin()), int(values.argmax())):
+            cell = next(
+                int(cells[rows[0]])
+                for cells, nodes in zip(self._cells, self._nodes, strict=True)
+                if (
+                    rows := np.flatnonzero(
+                        (nodes == node[at]).any(axis=1) & (self.sections[cells] == group[at])
+                    )
+                ).size
+            )
+            found.append((float(values[at]), cell, int(node[at])))
+        return found
+
+
+def _stored(name: str) -> tuple[str, int]:
+    """Array of points that has a variable, and its column; -1 for a scalar or an invariant."""
+    return COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0], -1))
+
+
+def _pick(values: Floats, name: str, column: int) -> Floats:
+    if name in INVARIANTS:
+        return invariant(name, values)
+    return values if column < 0 else values[:, column]
 
 
 def _extent(values: Ints) -> tuple[int, int]:
@@ -300,15 +337,10 @@ def stored_at_nodes(frame: Frame, name: str, section: int | None) -> Floats:
             return np.zeros(len(frame.U))  # a variable of line elements only
         return averaged_value(frame.averages, name)
     out = np.zeros(len(frame.U))
-    tensor, column = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0], -1))
+    tensor, column = _stored(name)
     if tensor in own:
-        values = own[tensor]
         nodes = np.asarray(own["nodes"], dtype=np.int64)
-        out[nodes] = (
-            invariant(name, values)
-            if name in INVARIANTS
-            else (values if column < 0 else values[:, column])
-        )
+        out[nodes] = _pick(own[tensor], name, column)
     return out
 
 

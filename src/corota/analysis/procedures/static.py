@@ -163,10 +163,11 @@ class StaticStepper(NewtonStepper):
         if outcome.reason:
             outcome, contact = self.equilibrium(target, known, before=before)
             outcome.iterations += before
-        if outcome.reason and may_unload and (step.fixed_increments or not turns):
-            # Where an increment can be cut, only elastic unloading is worth a second attempt: a
-            # long increment of a softening body may end on another equilibrium path.
-            first = math.inf if step.fixed_increments else ELASTIC
+        if outcome.reason and may_unload:
+            # While the load grows and an increment can be cut, only elastic unloading is worth a
+            # second attempt: a long increment of a softening body may end on another equilibrium
+            # path.
+            first = math.inf if turns or step.fixed_increments else ELASTIC
             again, its_contact = self.equilibrium(target, None, first, outcome.iterations)
             if again.reason:
                 outcome.iterations += again.iterations

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,6 +46,8 @@ class Supports:
         self.constrained = np.zeros(system.n_dofs, bool)
         self.history = LoadHistory(system.n_dofs)
         self.notes: list[str] = []
+        #: Supports that fix or move these dofs, in the order in which they were given.
+        self.acting: list[Fixed] = []
         self._guide()
 
     # -- steps -------------------------------------------------------------------------
@@ -55,6 +58,7 @@ class Supports:
 
     def release(self) -> None:
         """Release all dofs."""
+        self.acting = []
         self.constrained[:] = False
         self.history.amplitude[:] = 0
         self._guide()
@@ -71,8 +75,17 @@ class Supports:
         Raises
         ------
         ModelError
-            If a node has no such dof, or a constraint determines it.
+            If a node has no such dof, a constraint determines it, or there is nothing to release.
         """
+        for _, group in groupby(items, key=lambda item: item.place if item.free else ""):
+            run = list(group)
+            if run[0].free:
+                self._release(run)
+            else:
+                self._fix(run)
+
+    def _fix(self, items: list[Fixed]) -> None:
+        self.acting += items
         for item in items:
             nodes = self.system.model.mesh.node_indices(item.nodes)
             dofs = self.system.dofs(nodes, item.dof)
@@ -99,6 +112,28 @@ class Supports:
         places = np.flatnonzero(dofs)
         self.constrained[places] = True
         self.history.set(places, u[places], 0)
+
+    def _release(self, items: list[Fixed]) -> None:
+        """End the supports of a place in some directions."""
+        ended = [s for s in self.acting if any(s.same_dofs(item) for item in items)]
+        if not ended:
+            where, which = items[0].place, ", ".join(list(DOFS)[item.dof] for item in items)
+            places = ", ".join(dict.fromkeys(s.place for s in self.acting)) or "none"
+            raise ModelError(
+                f"no support at {where} in {which} when the step begins, so there is none to "
+                f"release; supports are at: {places}",
+                items[0].where,
+            )
+        self.acting = [s for s in self.acting if s not in ended]
+        freed = np.zeros(len(self.constrained), bool)
+        for supports, free in ((ended, True), (self.acting, False)):
+            for support in supports:
+                nodes = self.system.model.mesh.node_indices(support.nodes)
+                dofs = self.system.dofs(nodes, support.dof)
+                freed[dofs[dofs >= 0]] = free
+        self.constrained[freed] = False
+        self.history.amplitude[freed] = 0
+        self._guide()
 
     def _refuse_off_axis(self, item: Fixed, dofs: NDArray[np.int64]) -> None:
         """Refuse to move what is guided along the axis of a ring."""
@@ -132,6 +167,9 @@ class Supports:
             nodes = self.system.model.mesh.node_indices(item.nodes)
             dofs = self.system.dofs(nodes, item.dof)
             nodes, dofs = nodes[dofs >= 0], dofs[dofs >= 0]
+            if item.free:
+                given[dofs] = False
+                continue
             index = self.factors.index(item.amplitude, item.where)
             given_before = given[dofs] & (not item.keep)
             twice = given_before & ((value[dofs] != item.value) | (amplitude[dofs] != index))

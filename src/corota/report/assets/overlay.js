@@ -202,7 +202,9 @@ export class Overlay {
   supports(model, step) {
     const { camera } = this;
     const middle = [0, 1].map((i) => 0.5 * (model.low[i] + model.high[i]));
+    const ended = (model.description.supports ?? []).filter((s) => s.free && (step < 0 || s.step <= step));
     for (const support of chosen(model.description.supports, step)) {
+      if (support.free || (step >= 0 && ended.some((e) => same(e, support)))) continue;
       for (const [x, y, node] of this.#apart(model, support.nodes)) {
         const at = [model.points[2 * node], model.points[2 * node + 1]];
         const beyond = at[support.dof] > middle[support.dof] ? 1 : -1;
@@ -385,6 +387,9 @@ export class Overlay {
 }
 
 const chosen = (items, step) => (items ?? []).filter((item) => step < 0 || item.step === 0 || item.step === step);
+
+/** Whether two supports are at one place in one direction. */
+const same = (a, b) => a.dof === b.dof && a.where === b.where && a.nodes.length === b.nodes.length && a.nodes[0] === b.nodes[0];
 
 /** Places of a rigid curve in a frame. */
 export function rigidPoints(model, { segments, reference }, frame, scale) {

@@ -105,7 +105,7 @@ export class Tables {
   #supports() {
     const rows = (this.model.description.supports ?? []).map((s) => [
       s.step || "every", s.where, s.nodes.length, DIRECTIONS[s.dof],
-      withUnit(s.value, s.value && s.dof < 2 ? this.model.units.length : ""), s.amplitude]);
+      s.free ? "free" : withUnit(s.value, s.value && s.dof < 2 ? this.model.units.length : ""), s.amplitude]);
     return rows.length ? table(["step", "where", "nodes", "direction", "value", "amplitude"], rows, "Supports") : null;
   }
 

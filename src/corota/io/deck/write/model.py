@@ -37,6 +37,7 @@ from corota.model.compiled import Umat
 from corota.model.local_strain import dialect_strain
 from corota.model.material_table import MaterialTable
 from corota.model.mullins import Mullins
+from corota.model.released import without_releases
 from corota.model.steps import Static, Step
 from corota.model.viscoelastic import Viscoelastic
 
@@ -78,7 +79,7 @@ def write_deck(
     """
     target = Path(path)
     chosen = [steps] if isinstance(steps, Step) else list(model.steps if steps is None else steps)
-    writer = _Writer(model, chosen)
+    writer = _Writer(*without_releases(model, chosen))
     text = "".join(writer.cards())
     refuse_loss(writer, text)
     replace_text(target, text)
