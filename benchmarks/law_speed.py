@@ -87,7 +87,8 @@ def times(material: Any, element: str, n: int) -> list[float]:
     watch = Watch(time.process_time)
     step = ct.Visco if material.depends_on_time else ct.Static
     # No residual is that small: the step ends after the iterations.
-    options: dict[str, Any] = {"increments": 1, "max_iterations": ITERATIONS, "tolerance": 1e-30}
+    options: dict[str, Any] = {"increments": 1, "fixed_increments": True}
+    options |= {"max_iterations": ITERATIONS, "tolerance": 1e-30}
     with contextlib.suppress(ct.ConvergenceError), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         ct.solve(model, step(**options), observers=[watch], threads=1, fields=False)

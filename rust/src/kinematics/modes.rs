@@ -22,6 +22,8 @@ const DERIVATIVE_STEP: f64 = 1e-13;
 const DERIVATIVE_ROUNDED: f64 = 1e-6;
 /// Local step, relative to the element, that is zero: the work along smaller ones may underflow.
 const ZERO_STEP: f64 = 1e-100;
+/// Rounding errors of the stress of a body that does not deform, in units of its last place.
+const NOISE: f64 = 16.0;
 
 /// `K -= (L^-1 C)^T D^-1 (L^-1 C)`, blocks `a <= b`.
 #[inline(always)]
@@ -88,7 +90,11 @@ where
     }
     // What is held and heated, or has come back to its shape after flow, has no displacement
     // to measure the modes with: the elastic strain of its stress does.
-    let softness = 1.0 / history.per_point.law::<T, N>(0, section).moduli()[0][0];
+    let moduli = history.per_point.law::<T, N>(0, section).moduli();
+    let softness = 1.0 / moduli[0][0];
+    // Nor has what only moves as a body: its stress is the rounding of a stiff volume, and moves
+    // soft modes by that much.
+    let rounding = NOISE * f64::EPSILON * moduli[0][0] / moduli[2][2];
     size = size.max(extent * history.largest::<T, N>(section));
     let (mut tolerance, mut radius) = (T::zero(), T::zero());
     let mut base = *alpha;
@@ -102,7 +108,8 @@ where
         let sums = pass::<E, T, N, M, A>(x, q, alpha, section, history, None, false);
         if round == 0 {
             size = size.max(extent * sums.stress.scale(softness));
-            tolerance = size.scale(LOCAL_STEP).max(T::real(f64::MIN_POSITIVE));
+            tolerance = size.scale(LOCAL_STEP).max(extent.scale(rounding));
+            tolerance = tolerance.max(T::real(f64::MIN_POSITIVE));
             radius = size.scale(MODE_STEP);
         }
         let mut factor = sums.stiffness;
