@@ -135,7 +135,7 @@ class Step(Brief, Loading, Settings):
         Those of this step, beside the model's.
     new_supports : bool
         Remove the supports of earlier steps (``OP=NEW``) instead of adding and modifying; those
-        of the model begin anew. To release some of them see :meth:`release`.
+        of the model act again. To release some of them see :meth:`release`.
     new_loads : bool or collection of {"force", "distributed", "temperature"}
         Remove the loads of earlier steps: all, or those of some kinds.
     ended : set of {"force", "distributed", "temperature"}
