@@ -134,7 +134,7 @@ class Wait(BaseObserver):
     def increment(self, frame: ct.Frame) -> None:
         if frame.increment in (100, 200, 300):
             self.looked.clear()
-            self.looked.wait()
+            assert self.looked.wait(120.0), "the reader saw no frame"
 
 
 def test_pages_while_the_run_writes(tmp_path: Path) -> None:
