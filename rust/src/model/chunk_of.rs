@@ -209,9 +209,9 @@ where
                         #[inline(always)]
                         |l| self.origin[((first + l).min(last) * N + a) * M + i],
                     );
-                    u[a][i] = u[a][i] - start;
+                    u[a][i] -= start;
                     if i < 2 && context.nlgeom {
-                        x[a][i] = x[a][i] + start;
+                        x[a][i] += start;
                     }
                 }
             }

@@ -269,8 +269,8 @@ impl Problem {
     pub fn momenta(&self, u: &[f64], v: &[f64], kind: MassKind, carried: bool) -> Momenta {
         let context = Context::new(&self.x, &self.dofs, self.lanes, u);
         let mut sums = Momenta::default();
-        let there = |c: &&Box<dyn Chunk>| !is_idle(c.block(), &[], &self.removed);
-        for chunk in self.colors.iter().flatten().filter(there) {
+        let chunks = self.colors.iter().flatten();
+        for chunk in chunks.filter(|c| !is_idle(c.block(), &[], &self.removed)) {
             chunk.momenta(&context, v, kind, carried, &mut sums, &mut []);
         }
         sums

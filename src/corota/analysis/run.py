@@ -26,6 +26,7 @@ from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
 from corota.analysis.terms.contact.messages import missed_peaks, pair_forces
+from corota.analysis.terms.contact.passed_through import passed_through
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.display import brief
 from corota.errors import (
@@ -274,6 +275,8 @@ class Analysis:
                 if state.energies.made_by_contact:
                     warnings.warn(remark, stacklevel=3)
             results.notes += missed_peaks(self.pair_forces, self.model.contacts)
+            if self.model.contacts:
+                results.notes += passed_through(self.model, self.system.by_node(state.u))
             if not state.u.any() and not results.modes and self._without_cause():
                 results.notes.append("nothing moved: no step has a load or a moving support")
         except MemoryError:
