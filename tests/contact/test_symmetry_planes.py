@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,9 @@ import corota as ct
 E, NU, INNER, OUTER, OVERLAP = 210e3, 0.3, 10.0, 20.0, 0.02
 
 
-def quarter(element: str, method: str, n: int) -> tuple[ct.Results, np.ndarray]:
+def quarter(
+    element: str, method: str, n: int, friction: float = 0.0
+) -> tuple[ct.Results, np.ndarray]:
     """A quarter of a ring on a shaft that is too thick, and the nodes of its bore by angle."""
 
     def arc(radius: float) -> object:
@@ -41,7 +45,7 @@ def quarter(element: str, method: str, n: int) -> tuple[ct.Results, np.ndarray]:
     model.fix("bottom", x=None, y=0.0)
     model.fix("top", x=0.0, y=None)
     shaft = ct.RigidCurve.circle((0.0, 0.0), INNER + OVERLAP)
-    model.contact("left", shaft, method=method, name="fit")
+    model.contact("left", shaft, method=method, friction=friction, name="fit")
     nodes = mesh.nodes_of("left")
     order = np.argsort(np.arctan2(*mesh.points[nodes].T[::-1]))
     return ct.solve(model, ct.Static()), nodes[order]
@@ -72,6 +76,21 @@ def test_a_quarter_of_a_press_fit_has_the_pressure_of_lame(
     # Of a quarter: the pressure times the radius in both directions.
     force = results.frames[-1].scalars["fit: force x"]
     assert force == pytest.approx(exact * INNER, rel=0.03)
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("n", [8, 32])
+def test_with_friction_the_mean_gap_of_the_last_edge_is_noted(n: int) -> None:
+    """The mean gap of the last edge is h^2/12R deeper than those of its nodes."""
+    results, _ = quarter("Q4I", "mortar", n, 0.1)
+    (note,) = (text for text in results.notes if "round, has friction" in text)
+    edge = 2.0 * INNER * np.sin(0.25 * np.pi / n)
+    found = re.search(r"which is (\S+) deeper", note)
+    assert found is not None
+    assert float(found[1]) == pytest.approx(edge**2 / (12.0 * INNER), rel=0.02)
+    for method, element in (("node_to_segment", "Q4I"), ("mortar", "Q8R")):
+        others, _ = quarter(element, method, n, 0.1)
+        assert not any("round, has friction" in text for text in others.notes)
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -129,5 +148,5 @@ def test_half_of_an_arch_below_a_probe_has_the_force_of_the_whole(
         model.contact("top", circle, friction=friction, name="probe")
         frame = ct.solve(model, ct.Static()).frames[-1]
         force.append(frame.RF[probe, 1] / (50.0 - left))
-    # Slips at the guided end have weights of their own.
+    # With friction the last edge keeps its mean gap.
     assert force[1] == pytest.approx(force[0], rel=1e-2 if friction else 1e-6)

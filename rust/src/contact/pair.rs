@@ -254,8 +254,8 @@ impl Contact {
     }
 
     /// Take which constraints belong to ends of the slave that supports hold from now on.
-    pub fn hold(&mut self, held: &[bool]) {
-        self.method.hold(&self.sides, held);
+    pub fn hold(&mut self, held: &[bool], rough: bool) {
+        self.method.hold(&self.sides, held, rough);
     }
 
     /// Take the nodes whose rotations are those of the bodies of slave and master, of which positions

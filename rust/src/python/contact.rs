@@ -396,11 +396,11 @@ impl Contact {
     }
 
     /// Take which constraints belong to ends of the slave that supports hold from now on.
-    fn hold(&mut self, held: Vec<bool>) -> PyResult<()> {
+    fn hold(&mut self, held: Vec<bool>, rough: bool) -> PyResult<()> {
         if held.len() < self.pair.places().len() {
             return Err(bad(format!("there are {} constraints", self.pair.places().len())));
         }
-        self.pair.hold(&held);
+        self.pair.hold(&held, rough);
         Ok(())
     }
 

@@ -113,7 +113,7 @@ class Loading:
                     f"free, or {other}=0.0 to fix both",
                     stacklevel=2,
                 )
-        if x is None and y is None and rotation in (None, False):
+        if x is None and y is None and (rotation is None or rotation is False):
             self._fixes_nothing()
         turn = 0.0 if rotation is True else None if rotation is False else rotation
         one = (x is FIXED) != (y is FIXED)

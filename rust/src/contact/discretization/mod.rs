@@ -106,7 +106,7 @@ pub trait Discretization: Send + Sync {
     }
 
     /// Take which constraints belong to ends of the slave that supports hold from now on.
-    fn hold(&mut self, _sides: &Sides, _held: &[bool]) {}
+    fn hold(&mut self, _sides: &Sides, _held: &[bool], _rough: bool) {}
 
     /// Keep what later evaluations depend on as what to return to.
     fn commit(&mut self) {}

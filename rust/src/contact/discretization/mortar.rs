@@ -15,7 +15,7 @@
 //! give the value of a parabola at its vertex. The sum is one, so that a uniform pressure passes the
 //! patch test. Where the master ends within such an edge, xi runs over the covered part, as if the edge
 //! ended there: else the area of a node would be negative. An end that a support guides is none: there
-//! functions are those inside the surface, for the slip the shape functions.
+//! functions are those inside the surface, of a rough surface the shape functions.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::super::corners::{open_ends, round};
@@ -194,9 +194,8 @@ struct Facing<'a, const D: usize> {
     /// The undeformed slave edge, and its thickness.
     reference: &'a Curve<f64>,
     thickness: Depth,
-    /// Slopes of the functions of the corners, times two: for the gap, for the slip.
+    /// Slope of the functions of the corners, times two.
     slope: f64,
-    slope_of_slip: f64,
     /// Clearance taken off the gap at the corners of the edge.
     offset: [f64; 2],
     /// Height of the master over the chord of the edge.
@@ -276,15 +275,15 @@ fn integrals<const D: usize>(
         slip[0] += part;
         slip[1] += part * place.v;
     }
-    let corners = |slope: f64, [a, b]: [f64; 2]| [0.5 * (a - slope * b), 0.5 * (a + slope * b)];
+    let corners = |[a, b]: [f64; 2]| [0.5 * (a - slope * b), 0.5 * (a + slope * b)];
     let sum = |slope: f64| (gap[0] + gap[1].scale(slope)).scale(0.5);
     let [a, b] = along;
     let side = |slope: f64| std::array::from_fn(|v| (a[v] + b[v].scale(slope)).scale(0.5));
     Integrals {
         gap: [sum(-slope), sum(*slope)],
-        slip: corners(now.slope_of_slip, slip),
-        direction: [side(-now.slope_of_slip), side(now.slope_of_slip)],
-        area: corners(*slope, area),
+        slip: corners(slip),
+        direction: [side(-slope), side(*slope)],
+        area: corners(area),
     }
 }
 
@@ -300,11 +299,10 @@ fn length<T: Smooth>(c: &Curve<f64>, r: T) -> T {
 
 /// Weighted gaps and slips at the corners of slave edges.
 pub struct Mortar {
-    /// Slopes of the functions of each edge, times two: for the gap, for the slip.
+    /// Slope of the functions of each edge, times two.
     slope: Vec<f64>,
-    slope_of_slip: Vec<f64>,
-    /// Those for the gap where no end of the slave is, and where none of its ends is guided by a
-    /// support: about one that is guided nothing tips.
+    /// That where no end of the slave is, and that where none of its ends is guided by a support:
+    /// about one that is guided nothing tips.
     inner: Vec<f64>,
     free: Vec<f64>,
     /// Curvature of each master in the reference configuration.
@@ -312,12 +310,13 @@ pub struct Mortar {
 }
 
 impl Discretization for Mortar {
-    fn hold(&mut self, sides: &Sides, held: &[bool]) {
+    fn hold(&mut self, sides: &Sides, held: &[bool], rough: bool) {
         for (i, &free) in self.free.iter().enumerate() {
             let guided = sides.slave.constraints[i][..2].iter().any(|&c| held[c]);
-            self.slope[i] = if guided { self.inner[i] } else { free };
-            // A traction along the support would not move the slave, so that it could take any size.
-            self.slope_of_slip[i] = if guided { 1.0 } else { free };
+            // With the slip of the end node alone a traction along the support would not move the
+            // slave, so that it could take any size.
+            let inside = if rough { 1.0 } else { self.inner[i] };
+            self.slope[i] = if guided { inside } else { free };
         }
     }
 
@@ -387,7 +386,7 @@ impl Mortar {
         let edges = || sides.slave.edges.iter().enumerate();
         let inner = edges().map(|e| slope(e, false)).collect();
         let free: Vec<f64> = edges().map(|e| slope(e, ends[e.0].contains(&true))).collect();
-        Self { slope: free.clone(), slope_of_slip: free.clone(), inner, free, curvature }
+        Self { slope: free.clone(), inner, free, curvature }
     }
 
     /// Height of a master over the chord of a slave edge, whose functions take a gap for linear.
@@ -463,7 +462,6 @@ impl Mortar {
             reference: &sides.reference[i],
             thickness: sides.slave.thickness[i],
             slope: self.slope[i],
-            slope_of_slip: self.slope_of_slip[i],
             offset: [sides.offset[constraints[0]], sides.offset[constraints[1]]],
             height: self.height(sides, i, j),
         };

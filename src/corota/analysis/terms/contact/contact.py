@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 check_side = lazy("corota.analysis.terms.contact.side:check_side")
 corner_note = lazy("corota.analysis.terms.contact.messages:corner_note")
 fillet_note = lazy("corota.analysis.terms.contact.messages:fillet_note")
+guided_round_note = lazy("corota.analysis.terms.contact.messages:guided_round_note")
 contact_output = lazy("corota.analysis.terms.contact.output:output")
 what_gives_way = lazy("corota.analysis.terms.contact.messages:gives_way")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
@@ -223,6 +224,10 @@ class ContactTerm(Term):
         for pair in self.pairs:
             pair.fixed = pair.start = None
             pair.hold(constrained)
+            if self.number == 1 and pair.guided_ends.any() and not self.system.axisymmetric:
+                mesh = self.system.model.mesh
+                note = guided_round_note(pair, mesh.points, mesh.node_labels)
+                self.notes += [note] if note else []
         if self.persistent:
             x = self.positions(self.u)
             for pair in self.pairs:

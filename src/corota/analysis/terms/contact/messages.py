@@ -30,6 +30,8 @@ OFTEN = 2
 WHOLE = 0.99
 #: Least turn of a body's boundary at a corner [rad], as for constraints of corners.
 LEAST_TURN = np.radians(50.0)
+#: Turns at a vertex between which a surface is a round [rad].
+ROUND_FROM, ROUND_TO = 1e-3, 0.6
 
 
 def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
@@ -123,6 +125,36 @@ def _corners(contact_term: ContactTerm) -> NDArray[np.bool_]:
 
 #: Slave edges that a round corner should measure along its radius, and the least turn of one.
 EDGES, TURN = 2.0, math.radians(20.0)
+
+
+def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
+    """Note on a rough round slave of straight edges whose end a support guides, with mortar.
+
+    The last edge keeps its mean gap. Of a round with the radius R it is h^2/12R deeper than the
+    gaps of its nodes, which all other edges take, and without friction this one as well.
+    """
+    if pair.beside is None or pair.tied or not pair.rough or (pair.slave.nodes[:, 2] >= 0).any():
+        return ""
+    left, right = pair.beside
+    for k in np.flatnonzero(pair.guided_ends):
+        way = right if left[k] < 0 else left
+        chain = [int(k), int(way[k])]
+        chain.append(int(way[chain[1]]))
+        if min(chain) < 0:
+            continue
+        a, b, c = points[pair.nodes[chain], :2]
+        first, second = b - a, c - b
+        turn = abs(math.atan2(first[0] * second[1] - first[1] * second[0], float(first @ second)))
+        if ROUND_FROM < turn < ROUND_TO:
+            depth = math.hypot(*first) * turn / 12.0
+            return (
+                f"contact pair {pair.name!r}: the slave surface is round, has friction, and a "
+                f"support guides its end at node {labels[pair.nodes[k]]} (a plane of symmetry): "
+                f"its last edge keeps a mean gap, which is {depth:.3g} deeper than those of its "
+                "nodes. Where this counts beside the deformation, pressures there are wrong: take "
+                "method='node_to_segment', quadratic elements or the whole round"
+            )
+    return ""
 
 
 def fillet_note(pair: Pair) -> str:
@@ -272,6 +304,7 @@ __all__ = [
     "explanation",
     "fillet_note",
     "gives_way",
+    "guided_round_note",
     "missed_peaks",
     "pair_forces",
     "sunk_corner",

@@ -113,6 +113,9 @@ class Pair:
         self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
         self.held_ends = np.zeros(self.n, bool)  # fixed ends of the slave
+        self.guided_ends = self.held_ends  # those that a support guides
+        #: Whether shear tractions are unknowns, in some step at least.
+        self.rough = isinstance(item, Tie) or item.most_friction > 0.0
         integrates = isinstance(item, ContactPair) and METHODS[item.method]["integrates"]
         if integrates and not self.slave.pointwise:
             ends = self.place[self.slave.nodes[:, :2]]
@@ -205,7 +208,7 @@ class Pair:
         """Find the ends of the slave that supports hold in a step, and tell the core.
 
         A fixed end gives its part to its neighbor. An end that is guided tips nothing: the core
-        weighs gaps there as inside the surface, and slips with the shape functions.
+        weighs gaps there as inside the surface, of rough surfaces with the shape functions.
 
         Parameters
         ----------
@@ -218,7 +221,8 @@ class Pair:
         ends = (left < 0) | (right < 0)
         count = np.round((constrained[self.nodes, :2] ** 2).sum(axis=1))
         self.held_ends = ends & (count == 2)
-        self.core.hold((ends & (count == 1)).tolist())
+        self.guided_ends = ends & (count == 1)
+        self.core.hold(self.guided_ends.tolist(), self.rough)
 
     def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
         """Constraints of slave surfaces on which none is closed at a committed state."""
@@ -561,6 +565,8 @@ class Pair:
         total = float((now * np.abs(q)).sum())
         stays = np.where((q != 0.0) | (total == 0.0), np.minimum(was, now), 0.0)
         begin = q if rates else np.where((q != 0.0) & limited, np.sign(q) * bound, last)
+        # Where the way turns back, the pressure that balances the friction turns at once.
+        begin = np.where(last * q < 0.0, q, begin)
         # Constraints that opened may have slid back without traction.
         work = stays * np.maximum(-0.5 * (begin + q) * slip, 0.0)
         work += (1.0 if rates else 0.5) * (now - stays) * np.maximum(-q * slip, 0.0)
