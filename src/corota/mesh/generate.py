@@ -156,7 +156,7 @@ def annulus(
     Parameters
     ----------
     inner, outer : float
-        Radii [length], 0 < inner < outer.
+        Radii [length], 0 < inner < outer. For a solid disc take a hole of a fiftieth of `outer`.
     n_radial, n_around : int
         Cells along the radius and around.
     angle : float, optional
