@@ -40,7 +40,7 @@ WORDS = {
     "howto/joints": "pivot, notch, parallelogram, cosine beam",
     "howto/tolerances": "scatter, yield of parts, sensitivity",
     "howto/seal": "gasket, tube",
-    "howto/press_fit": "press fit, shrink fit, shrinking, interference, interference fit, overlap, hub, shaft",
+    "howto/press_fit": "press fit, shrink fit, shrinking, interference, overlap, hub, shaft",
     "howto/steps": "springback, spring back, release a support, let go, remove a load, unload, "
     "several steps, step sequence, forming",
     "howto/o_ring": "o-ring, cord, groove",

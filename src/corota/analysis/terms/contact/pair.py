@@ -43,6 +43,8 @@ WIDTH = 20
 #: Edges by which its friction would move a slave node whose stiffness does not count, and the slip
 #: in edges that turns this friction round.
 WEIGHTLESS, TURNS_ROUND = 0.1, 1e-6
+#: Share of the friction that a surface can bear above which it slides as a whole.
+TURNS_BACK = 0.5
 
 
 class Pair:
@@ -565,8 +567,11 @@ class Pair:
         total = float((now * np.abs(q)).sum())
         stays = np.where((q != 0.0) | (total == 0.0), np.minimum(was, now), 0.0)
         begin = q if rates else np.where((q != 0.0) & limited, np.sign(q) * bound, last)
-        # Where the way turns back, the pressure that balances the friction turns at once.
-        begin = np.where(last * q < 0.0, q, begin)
+        # Where a sliding body turns back, the pressure that balances its friction turns at once.
+        slid = float((was * last).sum())
+        whole = float((was * np.where(limited, bound, np.abs(last))).sum())
+        if slid * float((now * q).sum()) < 0.0 and abs(slid) > TURNS_BACK * whole:
+            begin = np.where(last * q < 0.0, q, begin)
         # Constraints that opened may have slid back without traction.
         work = stays * np.maximum(-0.5 * (begin + q) * slip, 0.0)
         work += (1.0 if rates else 0.5) * (now - stays) * np.maximum(-q * slip, 0.0)
