@@ -442,7 +442,7 @@ class StaticStepper(NewtonStepper):
             largest_increment=0.0,
             fixed_increments=False,
         )
-        before, here, attempt = control.number, state.u, state.failed
+        before, here = control.number, state.u
         last, along_path = (control.time / step.period, here), 0.0
         kept = [control.time / step.period]
         resumed = state.resumption
@@ -480,9 +480,7 @@ class StaticStepper(NewtonStepper):
             )
         except (ConvergenceError, SingularError, ModelError) as error:
             if state.u is not here:
-                # The states that the path found are kept: there the step stops. The last attempt of
-                # load control shows where the body gives way.
-                state.failed = attempt
+                # The states that the path found are kept: there the step stops.
                 factor = kept[-1]
                 said = str(error).removesuffix(". All converged increments are kept")
                 fails, rates, stalled = "", self.rates, self.stalled

@@ -557,21 +557,21 @@ class Pair:
 
         What slides does so from the start: its traction was at the bound then, though a constraint
         that stuck or that slid back before had another. Contact that moves along the slave leaves
-        areas and comes to others: what it leaves slid as far as the rest. With rate conditions the
-        traction of the end acts over the whole slip.
+        areas and comes to others: what it leaves slid as far as the rest. With rate conditions, and
+        where a sliding body turns back, the traction of the end acts over the whole slip.
         """
         was, now = areas
         p, last = before
-        rates, bound = self.start is not None, self.bound(p)
+        bound = self.bound(p)
         limited = np.isfinite(bound)
         total = float((now * np.abs(q)).sum())
-        stays = np.where((q != 0.0) | (total == 0.0), np.minimum(was, now), 0.0)
-        begin = q if rates else np.where((q != 0.0) & limited, np.sign(q) * bound, last)
         # Where a sliding body turns back, the pressure that balances its friction turns at once.
         slid = float((was * last).sum())
         whole = float((was * np.where(limited, bound, np.abs(last))).sum())
-        if slid * float((now * q).sum()) < 0.0 and abs(slid) > TURNS_BACK * whole:
-            begin = np.where(last * q < 0.0, q, begin)
+        turns = slid * float((now * q).sum()) < 0.0 and abs(slid) > TURNS_BACK * whole
+        rates = turns or self.start is not None
+        stays = np.where((q != 0.0) | (total == 0.0), np.minimum(was, now), 0.0)
+        begin = q if rates else np.where((q != 0.0) & limited, np.sign(q) * bound, last)
         # Constraints that opened may have slid back without traction.
         work = stays * np.maximum(-0.5 * (begin + q) * slip, 0.0)
         work += (1.0 if rates else 0.5) * (now - stays) * np.maximum(-q * slip, 0.0)
