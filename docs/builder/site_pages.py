@@ -15,6 +15,7 @@ import search
 from svg import STYLE
 
 import corota as ct
+from corota.model.hyperelastic import Hyperelastic
 from corota.model.materials import Material
 
 DOCS = Path(__file__).resolve().parents[1]
@@ -26,6 +27,13 @@ def is_material(value: object) -> bool:
     return inspect.isclass(value) and issubclass(value, Material)
 
 
+#: Names of materials, and those of rubber and polymers among them.
+MATERIALS = [name for name in ct.__all__ if is_material(getattr(ct, name))]
+RUBBER = [
+    name
+    for name in MATERIALS
+    if issubclass(getattr(ct, name), Hyperelastic) or name in ("Mullins", "Viscoelastic")
+]
 #: Sections of the reference, and what of the public names stands in each.
 REFERENCE = {
     "Model": "Model Section Findings Amplitude Output Mesh Cells",
@@ -34,9 +42,10 @@ REFERENCE = {
     "Steps": "Static Visco Dynamic Frequency Buckle ModalDynamic SteadyState ArcLength "
     "DisplacementControl",
     "Materials": " ".join(
-        ["Expansion", "Voce", "CowperSymonds", "YieldRatio", "RateCurves", "Norton", "WLF"]
-        + [n for n in ct.__all__ if is_material(getattr(ct, n))]
+        ["Expansion", "Voce", "CowperSymonds", "YieldRatio", "RateCurves", "Norton"]
+        + [n for n in MATERIALS if n not in RUBBER]
     ),
+    "Rubber materials": " ".join(["WLF", *RUBBER]),
     "Contact and constraints": "RigidCurve ContactPair PressureLaw gap_element Tie Equation "
     "Coupling StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",
