@@ -82,7 +82,7 @@ def test_energy_of_a_spring_that_drags_a_block_and_comes_back(method: str) -> No
 @pytest.mark.parametrize("angle", [15.0, 40.0])
 def test_block_on_an_incline_below_the_friction_angle_rests(method: str, angle: float) -> None:
     """mu = tan(angle) + 0.02: the incline carries P cos(a) and P sin(a), in one increment, and the
-    block, held by nothing else, does not move by more than its strain."""
+    block, with no other support, does not move by more than its strain."""
     a, load = math.radians(angle), 3.0
     mesh = block(2.0, 0.5, 6, 2, angle=angle)
     model = ct.Model(mesh)
@@ -189,7 +189,7 @@ def test_a_block_tips_over_its_edge(method: str) -> None:
 def test_a_tall_block_slides_before_it_tips(method: str, mu: float, moves: bool) -> None:
     """Pushed at the height of 2 with W / 4, a block of width 1 on mu < 1/4 slides; with mu > 1/4 it
     would tip, as the resultant leaves its base: W / 4 x 2 = W / 2. Below, it needs mu W at a
-    spring, and what the spring lacks shows whether it slid or tipped."""
+    spring, and what is missing in the spring shows whether it slid or tipped."""
     weight, k = 8.0, 50.0
     mesh = block(1.0, 3.0, 4, 12)
     node = int(np.argmin(np.hypot(mesh.points[:, 0], mesh.points[:, 1] - 2.0)))

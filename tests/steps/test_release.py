@@ -70,6 +70,8 @@ def test_without_a_support_there_is_nothing_to_release() -> None:
         ct.solve(model)
     with pytest.raises(ct.InputError, match="release"):
         free.fix("right", x=None, y=None)
+    free.fix("right", x=None, y=None, rotation=0.0)  # a rotation of zero is a support
+    assert free.supports[-1].value == 0.0
     with pytest.raises(ct.InputError, match="no direction"):
         free.release("right", x=False, y=False, rotation=False)
 
