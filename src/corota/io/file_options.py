@@ -21,6 +21,7 @@ for _row in TABLE.values():
     _arrays = dict.fromkeys([_row.stored, *(item.array for item in _row.invariants)])
     _request = "U" if _row.name == "UR" else _row.request or _row.name
     FIELDS[_request] = FIELDS.get(_request, ()) + tuple(_arrays)
+    FIELDS |= {item.name: (item.array,) for item in _row.invariants}
 #: Other names of fields in requests.
 ALIASES = {
     "ELSE": "ENER", "NT11": "NT", "LE": "E", "CSTRESS": "CSTR", "CDISP": "CDIS", "UR": "U",

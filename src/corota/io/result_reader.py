@@ -222,7 +222,8 @@ class FileFrames(Sequence[Frame]):
             inside = len(cells) and cells.min() >= 0 and cells.max() < len(types)
             _whole(bool(inside) and len(set(run[cells].tolist())) == 1, "elements of a block")
         self._cells_with = _cells_with(every, self._cells)
-        self._places = places_of(file["corota"].get("extremes", ()))
+        extremes = file["corota"].get("extremes", {})
+        self._places = places_of({k: len(v) // max(self._count, 1) for k, v in extremes.items()})
         self._last: tuple[int, Frame] | None = None
 
     def __len__(self) -> int:

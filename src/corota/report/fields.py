@@ -10,7 +10,7 @@ import numpy as np
 from corota.io.result_reader import FileResults
 from corota.io.vtk.frame_arrays import point_data
 from corota.report.chunk import rounded
-from corota.results.table import CONTACT, TABLE
+from corota.results.table import CONTACT, INVARIANTS, TABLE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,10 +27,12 @@ VECTORS = {
     "VEL": ("velocity", "angular velocity"),
     "ACC": ("acceleration", "angular acceleration"),
 }
-#: Tensors: name in files to the name in the page.
-TENSOR_FILES = {row.stored: name for name, row in TABLE.items() if row.tensor}
-#: Variables that the page computes.
-DERIVED_FILES = {item.array for row in TABLE.values() for item in row.invariants}
+#: Arrays from which the page computes invariants (``assets/fields.js``); it reads the others.
+COMPUTED = {"Mises", "principal stress", "principal strain"}
+#: Tensors and invariants: name in files to the name in the page.
+PAGE_NAMES = {row.stored: name for name, row in TABLE.items() if row.tensor} | {
+    item.array: name for name, (_, item) in INVARIANTS.items() if item.array not in COMPUTED
+}
 #: Order of importance; other names come last.
 ORDER = (
     "U", "S", *CONTACT, "RF", "PEEQ", "N", "M1", "M2", "UR", "VEL", "E", "YRATIO", "ENER", "F",
@@ -57,10 +59,10 @@ class NodalArrays:
             found |= dict.fromkeys(self._files(index))
         self._have = set(found)
         names = [n for n, (main, _) in VECTORS.items() if main in found]
-        names += [n for file, n in TENSOR_FILES.items() if file in found]
+        names += [n for file, n in PAGE_NAMES.items() if file in found]
         names += ["UR"] if "rotation" in found else []
         used = {part for parts in VECTORS.values() for part in parts} | {"rotation"}
-        used |= set(TENSOR_FILES) | DERIVED_FILES
+        used |= set(PAGE_NAMES) | COMPUTED
         names += [n for n in found if n not in used and ": " not in n]
         rank = {name: i for i, name in enumerate(ORDER)}
         #: All names, the most important first.
@@ -91,8 +93,8 @@ def _files_of(name: str, have: set[str]) -> list[str]:
     """Names in files of the arrays that make one of the page."""
     if name in VECTORS:
         return [file for file in VECTORS[name] if file in have]
-    of_tensor = {own: file for file, own in TENSOR_FILES.items()}
-    return ["rotation" if name == "UR" else of_tensor.get(name, name)]
+    in_files = {own: file for file, own in PAGE_NAMES.items()}
+    return ["rotation" if name == "UR" else in_files.get(name, name)]
 
 
 def _assembled(name: str, parts: list[Floats]) -> Floats:

@@ -333,7 +333,7 @@ def stored_at_nodes(frame: Frame, name: str, section: int | None) -> Floats:
     if own is None:
         array = stored_as(name)[0]
         tensor = STORED[INVARIANTS[name][0]] if name in INVARIANTS else array
-        if array not in frame.averages and tensor not in frame.averages:
+        if not any(key in frame.averages for key in (name, array, tensor)):
             return np.zeros(len(frame.U))  # a variable of line elements only
         return averaged_value(frame.averages, name)
     out = np.zeros(len(frame.U))

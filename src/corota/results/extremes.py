@@ -14,7 +14,7 @@ from corota.results.table import NODAL, variables
 from corota.results.variables import match_name, point_value
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from numpy.typing import NDArray
 
@@ -101,13 +101,19 @@ def rows_of(frame: Frame) -> dict[str, Floats]:
     return found
 
 
-def places_of(names: Iterable[str]) -> dict[str, tuple[str, int]]:
-    """Array and row of each variable, component and invariant of such a dictionary."""
+def places_of(rows: Mapping[str, int]) -> dict[str, tuple[str, int]]:
+    """Array and row of each variable, component and invariant of such a dictionary.
+
+    Parameters
+    ----------
+    rows : mapping of str to int
+        Number of rows of each array; files of earlier versions do not have the last ones.
+    """
     known = variables()
     return {
         part: (name, i)
-        for name in names
-        for i, part in enumerate(known[name].names if name in known else [name])
+        for name, count in rows.items()
+        for i, part in enumerate((known[name].names if name in known else [name])[:count])
     }
 
 

@@ -11,27 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from corota.results.derived import DERIVED
+from corota.results.invariants import OF_STRAIN, OF_STRESS, Invariant
 
 STRESS, ENERGY_DENSITY = "force/length^2", "energy/length^3"
-
-
-@dataclass(frozen=True)
-class Invariant:
-    """A number computed from the components of a tensor.
-
-    Parameters
-    ----------
-    name, meaning : str
-    array : str
-        Its array in result files.
-    column : int
-        Principal value, largest first, and column of the array; -1 for the von Mises stress.
-    """
-
-    name: str
-    meaning: str
-    array: str
-    column: int
 
 
 @dataclass(frozen=True)
@@ -118,14 +100,6 @@ def _number(name: str, what: str, dimension: str = "", **more: object) -> Variab
     return Variable(name, ((name, what),), dimension, **more)  # type: ignore[arg-type]
 
 
-def _principal(letter: str, what: str) -> tuple[Invariant, ...]:
-    order = ("largest", "middle", "smallest")
-    return tuple(
-        Invariant(f"{letter}P{i + 1}", f"{place} principal {what}", f"principal {what}", i)
-        for i, place in enumerate(order)
-    )
-
-
 _ROWS = (
     _vector("U", "displacement", "length", title="displacements (vx,vy,vz)", block="DISP",
             letter="D"),
@@ -164,15 +138,14 @@ _ROWS = (
     _number("RFA2", "amplitude of the reaction y", "force", frame="H", first=5, positive=True,
             request="PRF"),
     _tensor("S", "Cauchy stress", "Cauchy stress xy", STRESS, array="stress",
-            invariants=(Invariant("MISES", "von Mises stress", "Mises", -1),
-                        *_principal("S", "stress")),
+            invariants=OF_STRESS,
             title="stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) ", block="STRESS",
             letter="S"),
     _tensor("SA", "amplitude of the stress", "amplitude of the stress xy", STRESS, request="PHS"),
     _number("MISESA", "largest von Mises stress over a period", STRESS, positive=True,
             request="PHS"),
     _tensor("E", "strain", "shear strain (angle)", array="strain", shear=0.5,
-            invariants=_principal("E", "strain"), block="TOSTRAIN", letter="E",
+            invariants=OF_STRAIN, block="TOSTRAIN", letter="E",
             title="strains (elem, integ.pnt.,exx,eyy,ezz,exy,exz,eyz) "),
     _number("PEEQ", "equivalent plastic strain", positive=True, block="PE",
             title="equivalent plastic strain (elem, integ.pnt.,pe)"),
@@ -208,12 +181,38 @@ def variables() -> dict[str, Variable]:
     return TABLE | {name: _user_defined(name) for name in DERIVED}
 
 
+def requests() -> dict[str, Variable]:
+    """Rows that output requests of decks name: :func:`variables`, and invariants."""
+    rows = {n: _printed(n, item.meaning, DIMENSIONS[n]) for n, (_, item) in INVARIANTS.items()}
+    return variables() | rows
+
+
+def markdown() -> list[str]:
+    """Lines of the table of variables in the documents."""
+    lines = ["| name | meaning | dimension | where |", "| --- | --- | --- | --- |"]
+    for row in _ROWS:
+        meaning = row.parts[0][1]
+        if len(row.parts) > 1:
+            meaning = meaning.removesuffix(" xx").removesuffix(" x")
+        of_array = {item.array: item.meaning for item in row.invariants if item.column < 0}
+        lists = {meaning: [name for name, _ in (*row.parts, row.size) if name]}
+        for item in row.invariants:
+            lists.setdefault(of_array.get(item.array, item.array), []).append(item.name)
+        where = "nodes" if row.frame else "points, averages"
+        for what, names in lists.items():
+            lines.append(f"| `{' '.join(names)}` | {what} | {DIMENSIONS[names[0]]} | {where} |")
+    return lines
+
+
 def _user_defined(name: str) -> Variable:
     text = DERIVED[name].meaning
     inside = text.partition("[")[2].partition("]")[0]
-    known = {row.dimension for row in _ROWS}
+    return _printed(name, text, inside if inside in {row.dimension for row in _ROWS} else "")
+
+
+def _printed(name: str, text: str, dimension: str) -> Variable:
     title = f"{(text.partition(' [')[0] or name).lower()} (elem, integ.pnt.,{name.lower()}) "
-    return _number(name, text, inside if inside in known else "", title=title, block=name[:8])
+    return _number(name, text, dimension, title=title, block=name[:8])
 
 
 #: Dimensions that descriptions name.
@@ -227,7 +226,9 @@ MEANING: dict[str, str] = {
     if name
 }
 #: Dimension of each.
-DIMENSIONS: dict[str, str] = {name: row.dimension for row in _ROWS for name in row.names}
+DIMENSIONS: dict[str, str] = {name: row.dimension for row in _ROWS for name in row.names} | {
+    item.name: item.dimension for r in _ROWS for item in r.invariants if item.dimension is not None
+}
 #: Nodal variables: name to (attribute of a frame, column); -1 is the size.
 NODAL: dict[str, tuple[str, int]] = {
     name: (row.frame, column)
@@ -252,14 +253,14 @@ COMPONENTS: dict[str, tuple[str, int]] = {
 INVARIANTS: dict[str, tuple[str, Invariant]] = {
     item.name: (row.name, item) for row in _ROWS for item in row.invariants
 }
-#: Variables that are negative nowhere; sizes of vectors and the von Mises stress are not, either.
+#: Variables that are negative nowhere, sizes of vectors among them.
 POSITIVE = frozenset(
     [row.name for row in _ROWS if row.positive]
-    + [r.size[0] for r in _ROWS if r.size[0]]
-    + ["MISES"]
+    + [row.size[0] for row in _ROWS if row.size[0]]
+    + [name for name, (_, item) in INVARIANTS.items() if item.positive]
 )
 
 __all__ = [
     "COMPONENTS", "CONTACT", "DIMENSIONS", "HARMONIC", "INVARIANTS", "MEANING", "NODAL", "POSITIVE",
-    "TABLE", "TENSORS", "Invariant", "Variable", "variables",
+    "TABLE", "TENSORS", "Variable", "markdown", "requests", "variables",
 ]  # fmt: skip

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from corota.model.units import Units
     from corota.results.frame import Frame, PointFields
+    from corota.results.table import Variable
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -100,7 +101,7 @@ def dimension(name: str) -> str:
 #: Dimensions of arrays of files.
 _OF_ARRAYS = {
     **{row.stored: row.dimension for row in TABLE.values()},
-    **{item.array: TABLE[of].dimension for of, item in INVARIANTS.values()},
+    **{item.array: DIMENSIONS[name] for name, (_, item) in INVARIANTS.items()},
     "frame rotation": "rad",
     "position": "length",
 }
@@ -132,7 +133,7 @@ def averaged_names(averages: Mapping[str, Floats]) -> list[str]:
 
 def averaged_value(averages: Mapping[str, Floats], name: str) -> Floats:
     """A component, invariant or scalar from arrays of a file, shape (n,)."""
-    array, column = stored_as(name)
+    array, column = (name, -1) if name in averages else stored_as(name)
     if array not in averages and name in INVARIANTS:
         tensor = STORED[INVARIANTS[name][0]]
         return invariant(name, averages[tensor][:, :4])
@@ -163,36 +164,16 @@ def described(name: str, units: Units) -> str:
     return f"{text.partition(' [')[0]} [{unit}]"
 
 
-def mises(stress: Floats) -> Floats:
-    """Von Mises stress of rows xx, yy, zz, xy; shape (..., 4) to (...)."""
-    xx, yy, zz, xy = (stress[..., i] for i in range(4))
-    square = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * xy**2
-    return np.asarray(np.sqrt(square), dtype=np.float64)
-
-
-def principal(tensor: Floats, shear: float = 1.0) -> Floats:
-    """Principal values, largest first, out-of-plane one included; (..., 4) to (..., 3).
-
-    Parameters
-    ----------
-    tensor : ndarray, shape (..., 4)
-        Rows xx, yy, zz, xy.
-    shear : float
-        Factor from the stored shear to the tensor's: 1 for stress, 1/2 for strain.
-    """
-    xx, yy, zz, xy = (tensor[..., i] for i in range(4))
-    middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), shear * xy)
-    high, low = middle + radius, middle - radius
-    between = np.maximum(low, np.minimum(high, zz))
-    return np.stack([np.maximum(high, zz), between, np.minimum(low, zz)], axis=-1)
-
-
 def invariant(name: str, tensor: Floats) -> Floats:
     """Values of an invariant of :data:`INVARIANTS` from its tensor, (..., 4) to (...)."""
     kind, item = INVARIANTS[name]
-    if item.column < 0:
-        return mises(tensor)
-    return np.asarray(principal(tensor, TABLE[kind].shear)[..., item.column])
+    values = item.function(of_the_tensor(TABLE[kind], tensor))
+    return np.asarray(values if item.column < 0 else values[..., item.column])
+
+
+def of_the_tensor(row: Variable, values: Floats) -> Floats:
+    """Components of a tensor from the stored ones: the shear strain is stored as the angle."""
+    return values if row.shear == 1.0 else values * [1.0, 1.0, 1.0, row.shear]
 
 
 def available(fields: Iterable[PointFields]) -> list[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.results.variables import mises
+from corota.results.invariants import mises
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

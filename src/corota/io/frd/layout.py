@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from corota.mesh.kinds import KINDS
-from corota.results.table import variables
+from corota.results.table import requests
 
 #: Our kinds: type number in the file, and nodes of it that the type has.
 ELEMENTS = {name: kind.frd for name, kind in KINDS.items() if kind.frd}
@@ -57,7 +57,7 @@ def _scalars(name: str, names: tuple[str, ...], request: str) -> Block:
 
 def _block(name: str) -> Block:
     """The block of an output variable, or one of its name."""
-    row = variables()[name]
+    row = requests()[name]
     if row.tensor:
         return _tensor(row.block, row.letter, row.request or name)
     if row.size[0]:
@@ -84,8 +84,8 @@ SURFACES = {
 def blocks() -> list[Block]:
     """Blocks in the order in which they are written, which is CalculiX's; ours come last."""
     first = [DISP, VELO, NDTEMP, STRESS, TOSTRAIN, FORC]
-    numbers = [row.name for row in variables().values() if row.block and not row.frame]
-    scalars = [_block(name) for name in numbers if not variables()[name].tensor]
+    numbers = [row.name for row in requests().values() if row.block and not row.frame]
+    scalars = [_block(name) for name in numbers if not requests()[name].tensor]
     known = ("PE", "ENER")  # as CalculiX orders them
     scalars.sort(key=lambda block: known.index(block.name) if block.name in known else len(known))
     return [*first, *scalars[:2], CONTACT, *scalars[2:], *SURFACES.values()]

@@ -14,7 +14,8 @@ from corota.io.vtk.frame_arrays import tensor_arrays
 from corota.mesh import Cells, Mesh
 from corota.model.model import Model
 from corota.results.results import Frame, Results
-from corota.results.table import variables
+from corota.results.table import requests
+from corota.results.variables import stored_as
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -222,11 +223,11 @@ class _Reader:
 def _frame(step: int, increment: int, time: float, n: int, at_nodes: Any) -> Frame:
     shift, force, speed = (at_nodes(name) for name in ("DISP", "FORC", "VELO"))
     averages: dict[str, Floats] = {}
-    for name, row in variables().items():
+    for name, row in requests().items():
         values = at_nodes(row.block) if row.block and not row.frame else None
         if values is not None and row.tensor:
             averages |= tensor_arrays(name, values[:, :4] / [1.0, 1.0, 1.0, row.shear])
-        elif values is not None:
+        elif values is not None and stored_as(name)[0] not in averages:
             averages[name] = values[:, 0]
     heat = at_nodes("NDTEMP")
     contact, traction = at_nodes("CONTACT"), None

@@ -31,6 +31,8 @@ from corota.io.vtk.frame_arrays import point_data
 from corota.model.contact import edges_or_nodes
 from corota.results.averaging import Averaging, section_of_cells
 from corota.results.rigid import moved, rigid_curves, rigid_lines
+from corota.results.table import INVARIANTS
+from corota.results.variables import averaged_value, stored_as
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -316,8 +318,8 @@ class FrdWriter:
                 found.append((block, every, longer(tensor)))
             elif block is NDTEMP and frame.T is not None:
                 found.append((block, every, longer(frame.T[:, None])))
-            elif block.request in data and len(block.components) == 1:
-                found.append((block, every, longer(data[block.request][:, None])))
+            elif stored_as(block.request)[0] in data and len(block.components) == 1:
+                found.append((block, every, longer(averaged_value(data, block.request)[:, None])))
             elif block is CONTACT and frame.C is not None:
                 slaves = np.flatnonzero(self._slaves(frame))
                 pressure, shear, gap, slip, _ = frame.C[slaves].T
@@ -341,8 +343,8 @@ class FrdWriter:
         if self._fields is not None:
             return block is DISP or block.request in self._fields or block.name in self._fields
         requested = [o for o in self._requests.active(frame) if o.of_file]
-        if not requested:
-            return True
+        if not requested:  # invariants follow from the tensors
+            return block.request not in INVARIANTS
         names = {name for o in requested for name in o.variables}
         return block.request in names or (block is CONTACT and bool(names & {"CDIS", "CSTR"}))
 

@@ -19,7 +19,8 @@ from corota.io.tables.dat_contact import contact_tables
 from corota.io.tables.dat_numbers import fortran, rows
 from corota.io.tables.dat_section import VARIABLES as SECTION_VARIABLES
 from corota.io.tables.dat_section import section_tables
-from corota.results.table import TABLE, variables
+from corota.results.table import INVARIANTS, TABLE, requests, variables
+from corota.results.variables import invariant
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -41,7 +42,7 @@ def node_titles() -> dict[str, tuple[str, str]]:
 
 def point_titles() -> dict[str, str]:
     """Tables of values at points: variable to title with its own spacing."""
-    return {n: r.title for n, r in variables().items() if not r.frame and r.title}
+    return {n: r.title for n, r in requests().items() if not r.frame and r.title}
 
 
 #: Tables of one number an element: variable to (title, title of the sum).
@@ -267,10 +268,12 @@ def _at_points(
     """Cell, point number (from 1) and value of every point of a set, in the set's order."""
 
     def take(block: PointFields) -> Floats | None:
-        if (fibers := _at_fibers(model, block, name)) is not None:
-            return fibers
-        # Variables that a material does not have, such as plastic strain, are zero.
-        return block.values.get(name, np.zeros_like(block.volume))
+        stored = INVARIANTS[name][0] if name in INVARIANTS else name
+        values = _at_fibers(model, block, stored)
+        values = block.values.get(stored) if values is None else values
+        if values is None:  # what a material does not have, such as plastic strain
+            return np.zeros_like(block.volume)
+        return invariant(name, values) if name in INVARIANTS else values
 
     place, owners, values = _picked(frame, cells, take)
     if not owners:

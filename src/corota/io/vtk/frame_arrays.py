@@ -61,8 +61,7 @@ def tensor_arrays(name: str, values: Floats) -> dict[str, Floats]:
     data = {row.stored: six(values)}
     for item in row.invariants:
         if item.array not in data:
-            whole = vf.mises(values) if item.column < 0 else vf.principal(values, row.shear)
-            data[item.array] = whole
+            data[item.array] = item.function(vf.of_the_tensor(row, values))
     return data
 
 
@@ -77,8 +76,10 @@ def cell_data(frame: Frame, n_cells: int) -> dict[str, Floats]:
         for name in (n for n in block.values if n not in INVARIANTS):
             mean = cell_mean(block, name, weights)
             arrays = {vf.STORED.get(name, name): six(mean) if name in TENSORS else mean}
-            if name == "S":
-                arrays["Mises"] = vf.mises(mean)
+            if name in TENSORS:
+                single = (item for item in TABLE[name].invariants if item.column < 0)
+                tensor = vf.of_the_tensor(TABLE[name], mean)
+                arrays |= {item.array: item.function(tensor) for item in single}
             for label, values in arrays.items():
                 data.setdefault(f"cell {label}", np.zeros((n_cells, *values.shape[1:])))
                 data[f"cell {label}"][block.cells] = values

@@ -9,7 +9,7 @@ from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
 from corota.io.deck.lexer import key
 from corota.model.steps import Output
-from corota.results.table import variables
+from corota.results.table import requests
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
@@ -38,7 +38,7 @@ ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF", "NT11": "NT"}
 
 def written(place: str) -> tuple[str, ...]:
     """Variables that are written at nodes, in elements or of contact."""
-    rows = {n: r for n, r in variables().items() if r.title and place in ("node", "el")}
+    rows = {n: r for n, r in requests().items() if r.title and place in ("node", "el")}
     own = tuple(n for n, r in rows.items() if bool(r.frame) == (place == "node"))
     return own + WRITTEN[place]
 
