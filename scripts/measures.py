@@ -14,6 +14,8 @@ from house_facts import ROOT, circles, imports, lines_with, size, sources
 CONTACT = "analysis/terms/contact/"
 #: A constant of a module.
 CONSTANT = r"^_?[A-Z][A-Z0-9_]*(, [A-Z][A-Z0-9_]*)*(: [^=]+)? = "
+#: The contact term of a system, by its class or by the attribute that it once was.
+TERM = r"\b(contact_term|ContactTerm)\b"
 #: A drawer of the evaluation.
 DRAWER = r"^    [a-z]\w*: "
 
@@ -46,9 +48,11 @@ MEASURES: dict[str, Callable[[Path], int]] = {
     "files of contact": lambda t: sum(p.startswith(CONTACT) for p, _ in sources(t)),
     "lines of contact": lambda t: size(t, CONTACT),
     "constants of contact": constants,
-    "files that know contact_term": lambda t: sum("contact_term" in text for _, text in sources(t)),
+    "files that know the contact term": lambda t: sum(
+        bool(re.search(TERM, text)) for _, text in sources(t)
+    ),
     "of these outside its folder": lambda t: sum(
-        "contact_term" in text for p, text in sources(t) if not p.startswith(CONTACT)
+        bool(re.search(TERM, text)) for p, text in sources(t) if not p.startswith(CONTACT)
     ),
     "lines of analysis": lambda t: size(t, "analysis/"),
     "lines with Any in analysis": lambda t: lines_with(t, r"\bAny\b", r"^(?!analysis/)"),

@@ -17,6 +17,7 @@ from benchmarks.contact_torture import run
 from corota import _core
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
+from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.messages import sunk_corner
 from corota.model.contact import METHODS
 from corota.model.loads import Fixed
@@ -243,7 +244,7 @@ def test_the_message_of_a_run_that_stops_names_a_corner_under_a_pressure_law() -
     model = tip_on_block("block", "mortar", law=ct.PressureLaw("linear", 1e5))
     system = System(model, Multifrontal())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
-    term = system.contact_term
+    term = system.term(ContactTerm)
     assert sunk_corner(system) == ""
     term.u = np.zeros(system.n_dofs)
     term.u[system.dofs(model.mesh.nodes_of("square"), 1)] = -DEEP

@@ -34,13 +34,13 @@ def problem(method, law):
 @pytest.mark.parametrize("method", METHODS)
 def test_rows_and_columns_are_derivatives(method, law):
     self = problem(method, law)
-    n, m = self.n, self.contact_term.n
+    n, m = self.n, self.term.n
     rng = np.random.default_rng(1)
     z = np.concatenate([0.01 * rng.standard_normal(n), rng.uniform(0.5, 2.0, m)])
     # Slips begin here: a row of what sticks is exact where nothing has slipped.
-    self.contact_term.u = z[:n].copy()
+    self.term.u = z[:n].copy()
     at = self.evaluate(z, 1.0)
-    for pair in self.contact_term.pairs:
+    for pair in self.term.pairs:
         pair.frozen = True
         pair.area = pair.full * 0.9
         pair.closed[:] = True
@@ -78,7 +78,7 @@ def test_rows_and_columns_are_derivatives(method, law):
     # Tractions that the matrix has not: those of open nodes, and of slipping ones, which are a
     # multiple of the pressure.
     gone = np.zeros(m, bool)
-    for pair, s in zip(self.contact_term.pairs, states, strict=True):
+    for pair, s in zip(self.term.pairs, states, strict=True):
         first, second = pair.first, pair.first + pair.n
         gone[first:second], gone[second : first + pair.width] = s == OPEN, s != CLOSED
         slips = np.flatnonzero(s == SLIPPING)

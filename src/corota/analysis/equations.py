@@ -8,7 +8,7 @@ elements, loads and supports, but no increments or iterations.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 import numpy as np
 
@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 
+#: A kind of term.
+Kind = TypeVar("Kind", bound="Term")
 #: Procedures that find the equilibrium of their own theory.
 EQUILIBRATING = ("static", "dynamic")
 #: Tangents whose memory is kept for the next ones.
@@ -66,10 +68,10 @@ class System(NumberedModel):
         super().__init__(model, solver, threads)
         self.conditions = Conditions(self)
         self.elements = Elements(self, self.conditions)
-        self.contact_term = ContactTerm(self)
         more = [term for make in TERMS.values() if (term := make(self)) is not None]
-        #: All terms of the equation except inertia and damping; the elements come first.
-        self.terms: list[Term] = [self.elements, self.conditions, *more, self.contact_term]
+        #: All terms of the equation except inertia and damping: the elements come first, contact,
+        #: whose multipliers are unknowns, last.
+        self.terms: list[Term] = [self.elements, self.conditions, *more, ContactTerm(self)]
         #: Whether the last static or dynamic step was geometrically linear.
         self._linear_state = False
         #: Whether the structure without its loads has no free motion in this step.
@@ -108,6 +110,10 @@ class System(NumberedModel):
         for term in self.terms:
             out[term.nodes(role)] = True
         return out
+
+    def term(self, kind: type[Kind]) -> Kind:
+        """The term of a kind, for those who know what it is."""
+        return next(term for term in self.terms if isinstance(term, kind))
 
     def gives_way(self) -> str:
         """What slides or tips beyond the committed state, for messages; or nothing."""
@@ -182,7 +188,7 @@ class System(NumberedModel):
         if len(z) > len(u):
             # Constraints hold at the end of the increment, whatever the rule weighs.
             end = StatePoint(u, step_time, multipliers=z[self.n_dofs :].copy())
-            self.contact_term.add(end, at)
+            self.terms[-1].add(end, at)
         if at.added is not None:
             self.pattern.add_diagonal(at.values, at.added)
         return at

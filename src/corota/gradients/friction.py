@@ -19,7 +19,7 @@ from scipy.sparse.linalg import splu
 from corota.analysis.terms.contact.gaps import CLOSED
 from corota.errors import UnsupportedError
 from corota.gradients.differences import all_derivatives
-from corota.gradients.surfaces import evaluate, residuals
+from corota.gradients.surfaces import contact_of, evaluate, residuals
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,7 +39,7 @@ STEP = 1e-5
 def surface_dofs(system: System) -> Ints:
     """Translations of the nodes of all contact surfaces."""
     nodes: list[Ints] = []
-    for pair in system.contact_term.pairs:
+    for pair in contact_of(system).pairs:
         nodes.append(pair.slave.node_list)
         if pair.master is not None:
             nodes.append(pair.master.node_list)
@@ -72,7 +72,7 @@ def solve(
     """
     if system.model.constraints or system.model.axes:
         raise UnsupportedError("gradients with friction do not include constraints and local axes")
-    term, n = system.contact_term, system.n_dofs
+    term, n = contact_of(system), system.n_dofs
     at = system.evaluate(u, time)
     matrix = system.pattern.full(at.values).tocsr()
     if at.load_stiffness is not None:
@@ -109,7 +109,7 @@ def solve(
 
 def _by_multipliers(system: System, u: Floats, time: float, surfaces: Surfaces) -> tuple[Any, Any]:
     """Derivatives of the residuals of equilibrium and of the constraints by multipliers."""
-    term = system.contact_term
+    term = contact_of(system)
     state = evaluate(system, u, surfaces.multipliers, time)
     rows, columns, values = [], [], []
     for pair, terms in zip(term.pairs, state.terms, strict=True):
@@ -139,7 +139,7 @@ def by_start(
     system: System, u: Floats, time: float, surfaces: Surfaces, z: Floats, y: Floats
 ) -> Floats:
     """Derivative of ``z . r + y . g`` by the positions at the start, shape (n_dofs, m)."""
-    term = system.contact_term
+    term = contact_of(system)
     start, out = term.u, np.zeros(z.shape)
     dofs, step = surface_dofs(system), STEP * system.cell_size
 

@@ -15,6 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import lsqr
 
+from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import ContactEquations
 from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SLIPPING
 from corota.analysis.terms.contact.problem import RightHandSides
@@ -68,6 +69,11 @@ class Surfaces:
         return np.concatenate([np.zeros(0, bool), *found])
 
 
+def contact_of(system: System) -> ContactTerm:
+    """The term of contact and ties of a system."""
+    return system.term(ContactTerm)
+
+
 def refuse_surfaces(model: Model) -> None:
     """Refuse contact that depends on its path.
 
@@ -97,7 +103,7 @@ def find(system: System, u: Floats, time: float, at: Evaluation, kinks: bool = F
     UnsupportedError
         If a constraint stands between open and closed, or between stick and slip; not with `kinks`.
     """
-    term = system.contact_term
+    term = contact_of(system)
     state = evaluate(system, u, np.ones(term.n), time)
     rows, columns, values, states, closed = [], [], [], [], []
     for pair, terms in zip(term.pairs, state.terms, strict=True):
@@ -148,7 +154,7 @@ def _refuse_stuck(
     ahead = -np.sign(q) * terms.slip
     between = slips & (ahead <= STANDS * system.length * pair.full)
     if between.any():
-        node = system.contact_term.label(pair, int(np.flatnonzero(between)[0]))
+        node = contact_of(system).label(pair, int(np.flatnonzero(between)[0]))
         raise UnsupportedError(
             f"node {node} of contact pair {pair.name!r} stands between stick and slip: measures "
             "have one-sided derivatives there. Change the load a little"
@@ -156,7 +162,7 @@ def _refuse_stuck(
 
 
 def _refuse_between(system: System, states: States, multipliers: Floats) -> None:
-    term = system.contact_term
+    term = contact_of(system)
     most = float(np.abs(multipliers).max(initial=0.0))
     for pair, state, (p, _) in zip(term.pairs, states, term.parts(multipliers), strict=True):
         if pair.tied:
@@ -178,7 +184,7 @@ def _gradients(pair: Any, terms: Any) -> Iterator[tuple[int, Floats]]:
 
 def evaluate(system: System, u: Floats, multipliers: Floats, time: float) -> ContactState:
     """Gaps, and forces of multipliers, without the tangent that only the choice of states needs."""
-    term = system.contact_term
+    term = contact_of(system)
     term._stiff = True
     return term.evaluate(u, multipliers, time, np.empty(0))
 
@@ -201,7 +207,7 @@ def add_forces(
 
 def slide(system: System, u: Floats | None = None, surfaces: Surfaces | None = None) -> None:
     """Let slips begin at a displacement, or where nothing has moved and all surfaces are open."""
-    term = system.contact_term
+    term = contact_of(system)
     term.u = np.zeros(system.n_dofs) if u is None else u.copy()
     for k, pair in enumerate(term.pairs):
         if surfaces is None:
@@ -213,7 +219,7 @@ def slide(system: System, u: Floats | None = None, surfaces: Surfaces | None = N
 
 def residuals(system: System, state: ContactState, surfaces: Surfaces) -> Floats:
     """Gaps and slips of closed constraints, tractions of slipping ones less those of friction."""
-    term = system.contact_term
+    term = contact_of(system)
     out = np.zeros(term.n)
     parts = term.parts(surfaces.multipliers)
     each = zip(term.pairs, state.terms, parts, surfaces.states, surfaces.signs, strict=True)
@@ -231,7 +237,7 @@ def solve(
     system: System, u: Floats, time: float, surfaces: Surfaces, rhs: Floats, moved: Floats
 ) -> tuple[Floats, Floats]:
     """Adjoint displacements and multipliers, shapes (n_dofs, m) and (n_multipliers, m)."""
-    term = system.contact_term
+    term = contact_of(system)
     contact = ContactEquations(system)
     term._stiff = False
     at, symmetric = system.evaluate(np.concatenate([u, surfaces.multipliers]), time), True

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
 from corota.analysis.energies import LARGE_ERROR
 from corota.analysis.increment_loop import Accepted, IncrementLoop
+from corota.analysis.numbered_model import Role
 from corota.analysis.procedures.explicit_constraints import ReducedMass, mass_of
 from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.rule import AtVelocity
@@ -165,9 +166,8 @@ class ExplicitStepper:
         self.mass = mass = diagonal(system)
         self.moved = mass_of(system, mass, state.u)
         if isinstance(self.moved, ReducedMass):
-            for pair in system.contact_term.pairs:
-                for side in filter(None, (pair.slave, pair.master)):
-                    self.moved.refuse_contact(side.node_list, step.where)
+            for role in get_args(Role):
+                self.moved.refuse_contact(system.nodes_of_terms(role), step.where)
         constrained = system.conditions.constrained
         resumes = bool(state.resumes)
         self.stable = np.inf if resumes else stable_increment(system, state.u, self.moved)

@@ -57,7 +57,7 @@ class ContactEquations(ContactProblem):
     def start(self, u: Floats) -> Floats:
         """Displacements with the committed multipliers."""
         self.origin = u
-        return np.concatenate([u, self.contact_term.committed])
+        return np.concatenate([u, self.term.committed])
 
     def residual_norms(self, at: Evaluation, z: Floats) -> ResidualNorms:
         """Size of the residual, of equilibrium and of the contact conditions."""
@@ -68,12 +68,12 @@ class ContactEquations(ContactProblem):
         complementarity, pair, constraint = self.complementarity(at)
         before = norms.force
         if self.kink is not None:
-            stiffness = float(self.kink.move**2 @ self.contact_term.nodal)
-            apart = max(abs(self.kink.distance) - self.contact_term.pairs[0].noise, 0.0)
+            stiffness = float(self.kink.move**2 @ self.term.nodal)
+            apart = max(abs(self.kink.distance) - self.term.pairs[0].noise, 0.0)
             complementarity = max(complementarity, self.kink.excess, stiffness * apart)
         self.system.scales.add_complementarity(norms, complementarity)
         if norms.force > before:
-            node = self.contact_term.pairs[pair].nodes[constraint]
+            node = self.term.pairs[pair].nodes[constraint]
             norms.worst = int(self.system.start[node])
         if self.corrections:  # before the first one, supports may not have moved
             self.waited = 0 if norms.size < PROGRESS * self.least else self.waited + 1
@@ -101,8 +101,7 @@ class ContactEquations(ContactProblem):
             if found is not None:
                 z, self.last, slip_directions = found
                 self.slip_directions = {
-                    p.first: s
-                    for p, s in zip(self.contact_term.pairs, slip_directions, strict=True)
+                    p.first: s for p, s in zip(self.term.pairs, slip_directions, strict=True)
                 }
                 self.pivoted += 1
                 self.stage = "contact states by pivoting"
@@ -116,8 +115,8 @@ class ContactEquations(ContactProblem):
 
         One side of it alone is no equilibrium, and a correction from there may go anywhere.
         """
-        kink = self.contact_term.kink
-        if kink is not None and self.system.nlgeom and not self.contact_term.persistent:
+        kink = self.term.kink
+        if kink is not None and self.system.nlgeom and not self.term.persistent:
             self.kink, self.inherits = replace(kink, base=None), True
 
     # -- the end of an increment -------------------------------------------------------
@@ -132,7 +131,7 @@ class ContactEquations(ContactProblem):
         self.contact_state = None if outcome.at is None else outcome.at.contact_state
         if not outcome.converged:
             settled.reason = f"{outcome.reason}{self.explain(outcome.at)}"
-            self.contact_term.revert()
+            self.term.revert()
         if outcome.converged and self.pivoted:
             said = f"contact states by pivoting in {self.pivoted} iterations"
             settled.note = f"{settled.note}; {said}".strip("; ")
@@ -155,8 +154,8 @@ class ContactEquations(ContactProblem):
             return ""
         since = None if moves else self.since
         old, new = (
-            self.contact_term.positions(self.contact_term.u if since is None else since),
-            self.contact_term.positions(z[: self.n]),
+            self.term.positions(self.term.u if since is None else since),
+            self.term.positions(z[: self.n]),
         )
         still = self.pivoted and not self.relaxing and not moves
         if still and not self.near(z[: self.n]):
@@ -165,12 +164,12 @@ class ContactEquations(ContactProblem):
                 "increment"
             )
         for k, (pair, terms, (p, q)) in enumerate(self.pairs(at.contact_state)):
-            starts = partial(outside, self.contact_term, k, moves)
+            starts = partial(outside, self.term, k, moves)
             states = partial(pair.states, terms, p, q)
             found = passed(pair, old, new, states, terms, starts)
             if len(found):
                 return (
-                    f"node {self.contact_term.label(pair, int(found[0]))} passed through the "
+                    f"node {self.term.label(pair, int(found[0]))} passed through the "
                     f"opposite surface of contact pair {pair.name!r} in one increment"
                 )
         return ""
@@ -201,26 +200,26 @@ class ContactEquations(ContactProblem):
     def impact_error(self, moved: Floats, energy: float, tolerance: float, meets: bool) -> float:
         """See :func:`corota.analysis.terms.contact.impact.impact_error`."""
         assert self.contact_state is not None
-        return impact_error(self.contact_term, self.contact_state, moved, energy, tolerance, meets)
+        return impact_error(self.term, self.contact_state, moved, energy, tolerance, meets)
 
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""
         assert self.contact_state is not None
-        self.contact_term.accept(u, self.contact_state, step_time)
-        self.contact_term.kink = None if self.kink is None else replace(self.kink, base=None)
+        self.term.accept(u, self.contact_state, step_time)
+        self.term.kink = None if self.kink is None else replace(self.kink, base=None)
         notes = []
-        if self.loose and not self.presses and FLOATS not in self.contact_term.reported_constraints:
-            self.contact_term.reported_constraints.add(FLOATS)
+        if self.loose and not self.presses and FLOATS not in self.term.reported_constraints:
+            self.term.reported_constraints.add(FLOATS)
             notes.append(
                 f"no contact is closed, and {self.loose}: the position of that body is "
                 "undetermined until contact or a support constrains it"
             )
         dropped: dict[str, list[str]] = {}
-        for number in sorted(self.border.dropped - self.contact_term.reported_constraints):
-            pair = next(p for p in reversed(self.contact_term.pairs) if p.first <= number)
+        for number in sorted(self.border.dropped - self.term.reported_constraints):
+            pair = next(p for p in reversed(self.term.pairs) if p.first <= number)
             constraint = (number - pair.first) % pair.n
             if constraint < pair.of_nodes:  # not a facet between two nodes that are closed as well
-                label = str(self.contact_term.label(pair, constraint))
+                label = str(self.term.label(pair, constraint))
                 dropped.setdefault(pair.name, []).append(label)
         for name, labels in dropped.items():
             some = ", ".join(labels[:MAX_LISTED])
@@ -230,7 +229,7 @@ class ContactEquations(ContactProblem):
                 "dropped: supports, ties or other contact constraints fix the node in that "
                 "direction and carry its force"
             )
-        self.contact_term.reported_constraints |= self.border.dropped
+        self.term.reported_constraints |= self.border.dropped
         return notes
 
     def explain(self, at: Evaluation | None) -> str:

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.terms.contact.complementarity import UnilateralConstraints
+from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.gaps import ContactState
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN
 from corota.errors import ConvergenceError
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from corota.analysis.energies import Energies
     from corota.analysis.equations import System
     from corota.analysis.terms.contact.complementarity import Law
-    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.pair import Pair, Terms
 
     Floats = NDArray[np.float64]
@@ -460,7 +460,7 @@ def forward_contact(
     system: System, account: Energies, dt: float
 ) -> ForwardContact | NoForwardContact:
     """Contact of an explicit step, with or without pairs."""
-    contact = system.contact_term
+    contact = system.term(ContactTerm)
     if not contact.pairs:
         return NoForwardContact(system.n_dofs)
     return ForwardContact(contact, account, dt)

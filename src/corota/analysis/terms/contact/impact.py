@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.pair import COVERED, OPEN
 from corota.analysis.terms.contact.tunneling import UNSEEN, other_side, times_of_crossing
 from corota.mesh.parts import part_of_nodes
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
-    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.gaps import ContactState
     from corota.analysis.terms.contact.pair import Pair, Terms
     from corota.analysis.terms.inertia import MotionState
@@ -36,7 +36,7 @@ FIRST = 1.0
 
 
 def impact_error(
-    contact_term: ContactTerm,
+    term: ContactTerm,
     contact_state: ContactState,
     moved: Floats,
     energy: float,
@@ -62,40 +62,40 @@ def impact_error(
     meets : bool
         Whether the increment was to end where surfaces meet.
     """
-    first = _first_contact(contact_term, contact_state, meets) / (FIRST * tolerance)
-    if contact_term.persistent:
+    first = _first_contact(term, contact_state, meets) / (FIRST * tolerance)
+    if term.persistent:
         depth = 0.0
-        for pair, terms in zip(contact_term.pairs, contact_state.terms, strict=True):
+        for pair, terms in zip(term.pairs, contact_state.terms, strict=True):
             if pair.start is not None and pair.law is None and pair.n:
                 deeper = np.minimum(pair.begun()[0], 0.0) - (terms.bare or terms).gap
                 edge = float(pair.slave.length.mean())
                 depth = max(depth, float((deeper / pair.full).max()) / edge)
         return max(first, 0.1 * depth / tolerance)
     work = float(contact_state.force @ moved)
-    parts = contact_term.parts(contact_state.multipliers)
+    parts = term.parts(contact_state.multipliers)
     for k, (pair, terms, (_, q)) in enumerate(
-        zip(contact_term.pairs, contact_state.terms, parts, strict=True)
+        zip(term.pairs, contact_state.terms, parts, strict=True)
     ):
         if pair.friction:
             work -= float(q @ terms.slip)
         if pair.law is not None:
-            before = 0.0 if contact_term.at is None else pair.law_energy(contact_term.at.terms[k])
+            before = 0.0 if term.at is None else pair.law_energy(term.at.terms[k])
             work += pair.law_energy(terms) - before
     return max(first, 10.0 * abs(work) / (tolerance * energy) if energy > 0.0 else 0.0)
 
 
-def _first_contact(contact_term: ContactTerm, contact_state: ContactState, meets: bool) -> float:
+def _first_contact(term: ContactTerm, contact_state: ContactState, meets: bool) -> float:
     """How late the first contact of surfaces is found [slave edges]."""
     late = 0.0
-    parts = contact_term.parts(contact_state.multipliers)
-    before = contact_term.at
-    x = contact_term.positions(contact_term.u)
+    parts = term.parts(contact_state.multipliers)
+    before = term.at
+    x = term.positions(term.u)
     for number, (pair, terms, (p, q)) in enumerate(
-        zip(contact_term.pairs, contact_state.terms, parts, strict=True)
+        zip(term.pairs, contact_state.terms, parts, strict=True)
     ):
         if pair.tied or not pair.n or before is None or (meets and pair.start is None):
             continue
-        begun = pair.gaps_at(contact_term, number, x)
+        begun = pair.gaps_at(term, number, x)
         apart = pair.apart(begun, before.states[number])
         if pair.start is not None:
             depth = -(terms.bare or terms).gap
@@ -133,17 +133,17 @@ class Approach:
         Whether it was shortened.
     """
 
-    recomputed: ClassVar[frozenset[str]] = frozenset({"system", "part", "heavy"})
+    recomputed: ClassVar[frozenset[str]] = frozenset({"system", "term", "part", "heavy"})
 
     def __init__(self, system: System, massless: NDArray[np.bool_]) -> None:
-        self.system = system
+        self.system, self.term = system, system.term(ContactTerm)
         self.meets = self.limited = False
         self.in_a_row = 0
         #: Displacement of the last increment by node and its time; velocities of nodes without
         #: mass oscillate about it.
         self.moved, self.dt = np.zeros((0, 3)), 0.0
         mesh = system.model.mesh
-        opens = system.contact_term.opens
+        opens = self.term.opens
         part = part_of_nodes(mesh) if opens else np.full(mesh.n_nodes, -1, np.int64)
         heavy = np.zeros(len(part), bool)
         heavy[system.node_of_dof[~massless & ~system.is_rotation]] = True
@@ -156,7 +156,7 @@ class Approach:
     def within(self, now: MotionState, dt: float, least: float) -> float:
         """The increment, or the shorter one that ends at first contact [time]."""
         self.meets = self.limited = False
-        term: ContactTerm = self.system.contact_term
+        term = self.term
         if not term.opens or self.in_a_row >= MOST_IN_A_ROW:
             return dt
         x = rates = acceleration = None
@@ -184,7 +184,7 @@ class Approach:
 
     def follow(self, before: Floats, after: Floats, dt: float) -> None:
         """Record an accepted increment between displacements of shape (n_dofs,)."""
-        if not self.system.contact_term.opens:
+        if not self.term.opens:
             return
         self.in_a_row = self.in_a_row + 1 if self.limited else 0
         self.moved, self.dt = self.system.by_node(after - before), dt

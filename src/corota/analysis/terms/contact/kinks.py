@@ -236,11 +236,11 @@ def keeps_kink(problem: ContactProblem, at: Evaluation) -> bool:
         or problem.kinks >= MAX_KINKS
         or not _to_and_fro(problem.places)
         or at.link.couples
-        or problem.contact_term.persistent
+        or problem.term.persistent
         or not problem.system.nlgeom
     ):
         return False
-    sides = Sides(problem.contact_term, at.contact_state.multipliers, at.contact_state.time)
+    sides = Sides(problem.term, at.contact_state.multipliers, at.contact_state.time)
     _, before, here = problem.places
     problem.kink = found(sides, here, before)
     # The candidates of the search may have changed.

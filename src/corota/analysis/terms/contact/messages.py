@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.surface import blunt_turns, sharp_corners
 from corota.model.contact import ContactPair, RigidCurve
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.contact.problem import ContactProblem
 
@@ -40,29 +40,29 @@ def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
         return ""
     said = ""
     complementarity, k, i = problem.complementarity(at)
-    pair, terms = problem.contact_term.pairs[k], at.contact_state.terms[k]
+    pair, terms = problem.term.pairs[k], at.contact_state.terms[k]
     if complementarity > 0.0:
-        p = problem.contact_term.parts(at.contact_state.multipliers)[k][0][i]
+        p = problem.term.parts(at.contact_state.multipliers)[k][0][i]
         area = terms.area[i]
         gap = f"{terms.gap[i] / area:.3g}" if area > 0.0 else "none"
         said = (
-            f"; contact pair {pair.name!r}: worst at node {problem.contact_term.label(pair, i)} "
+            f"; contact pair {pair.name!r}: worst at node {problem.term.label(pair, i)} "
             f"(gap {gap}, pressure {p:.3g})"
         )
     flipping = [
         (int(f[j]), pair, int(j))
-        for pair, f in zip(problem.contact_term.pairs, problem.flips, strict=True)
+        for pair, f in zip(problem.term.pairs, problem.flips, strict=True)
         for j in np.flatnonzero(f > OFTEN)
     ]
     flipping.sort(key=lambda item: -item[0])
     if flipping:
-        names = ", ".join(str(problem.contact_term.label(q, j)) for _, q, j in flipping[:5])
+        names = ", ".join(str(problem.term.label(q, j)) for _, q, j in flipping[:5])
         said += (
             "; the contact state (open, stick or slip) kept changing at "
             f"node{'s' if len(flipping) > 1 else ''} {names}"
             f"{', ...' if len(flipping) > 5 else ''} of pair {flipping[0][1].name!r}"
         )
-    if way := gives_way(problem.contact_term):
+    if way := gives_way(problem.term):
         said += f"; {way}"
     elif problem.sliding > OFTEN:
         said += "; friction does not hold the bodies: they slide"
@@ -221,7 +221,7 @@ def sunk_corner(system: System) -> str:
     A pressure law acts on areas, so that a corner has no constraint of its own: it can penetrate
     between two slave nodes until one of them is in contact with the side of the corner and jams.
     """
-    contact_term = system.contact_term
+    contact_term = system.term(ContactTerm)
     x = contact_term.positions(contact_term.u)[:, :2]
     worst, said = NAMED, ""
     for pair in contact_term.pairs:

@@ -12,6 +12,7 @@ import numpy as np
 from corota.analysis.failure import ElementFailure
 from corota.analysis.newton import newton
 from corota.analysis.rule import REST, Rule
+from corota.analysis.terms.contact.contact import ContactTerm
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -102,7 +103,8 @@ def solve_increment(
     contact : ContactIncrement
         Its ``accept`` commits contact, once the increment is taken.
     """
-    if not system.contact_term.pairs:
+    term = system.term(ContactTerm)
+    if not term.pairs:
         begin = None if known is None else system.with_loads(known, u, step_time)
         outcome = newton(system, u, prescribed, step_time, settings, begin, report, rule)
         return outcome, NoContact(system.n_dofs)
@@ -132,14 +134,13 @@ def solve_increment(
                     system.pattern.add_diagonal(start.values, sign * added)
     fluids = system.conditions.fluids
     if fluids:
-        term = system.contact_term
         known_terms = None if term.at is None else term.at.terms
         system.conditions.begin_fluids(*pressures(term, known_terms, term.committed), u)
         start = None
     found = newton(problem, z, target, step_time, more, start, report, rule)
     while fluids and found.converged and found.at is not None:
         state = found.at.contact_state
-        contact = pressures(system.contact_term, state.terms, state.multipliers)
+        contact = pressures(term, state.terms, state.multipliers)
         if not system.conditions.advance_fluids(*contact, found.u[:n], step_time):
             break
         problem.go_on()

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def output(
-    contact_term: ContactTerm,
+    term: ContactTerm,
 ) -> tuple[Floats | None, dict[str, float], dict[str, Floats]]:
     """Contact at the nodes of the committed state, and sums of the pairs.
 
@@ -33,18 +33,16 @@ def output(
     pairs : dict of str to ndarray, shape (n_nodes, 5)
         See :attr:`corota.results.Frame.pairs`.
     """
-    if not contact_term.pairs:
+    if not term.pairs:
         return None, {}, {}
-    n = len(contact_term.system.per_node)
+    n = len(term.system.per_node)
     values = np.zeros((n, 5))
     sums: dict[str, float] = {}
-    several = sum(not pair.tied for pair in contact_term.pairs) > 1
-    each = {p.name: np.zeros((n, 5)) for p in contact_term.pairs if several and not p.tied}
-    contact_state = contact_term.at
+    several = sum(not pair.tied for pair in term.pairs) > 1
+    each = {p.name: np.zeros((n, 5)) for p in term.pairs if several and not p.tied}
+    contact_state = term.at
     friction = law = 0.0
-    for k, (pair, (p, q)) in enumerate(
-        zip(contact_term.pairs, contact_term.parts(contact_term.committed), strict=True)
-    ):
+    for k, (pair, (p, q)) in enumerate(zip(term.pairs, term.parts(term.committed), strict=True)):
         if contact_state is None:
             if not pair.tied:
                 rows = np.zeros((pair.n, 5))
@@ -86,25 +84,25 @@ def output(
         law += pair.law_energy(terms)
     sums["friction energy"] = friction
     sums["contact energy"] = law
-    sums["stabilization energy"] = contact_term.damping_work
+    sums["stabilization energy"] = term.damping_work
     return values, sums, each
 
 
 def pressures(
-    contact_term: ContactTerm, terms: list[Terms] | None, multipliers: Floats
+    term: ContactTerm, terms: list[Terms] | None, multipliers: Floats
 ) -> tuple[Floats, NDArray[np.bool_]]:
     """Contact pressure of the slave nodes, and nodes whose pair has a pressure law.
 
     Parameters
     ----------
-    contact_term : ContactTerm
+    term : ContactTerm
     terms : list of Terms or None
         Of all pairs at the state; None before the first increment.
     multipliers : ndarray, shape (n_multipliers,)
     """
-    n = len(contact_term.system.per_node)
+    n = len(term.system.per_node)
     values, soft = np.zeros((n, 5)), np.zeros(n, bool)
-    each = zip(contact_term.pairs, contact_term.parts(multipliers), strict=True)
+    each = zip(term.pairs, term.parts(multipliers), strict=True)
     for k, (pair, (p, _)) in enumerate(each):
         if pair.tied:
             continue

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.path_system import NOT_CONSERVATIVE, Metric, Point, SmoothPath, Tangent
+from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import MAX_EXTRA_CONTACT_ITERATIONS, ContactEquations
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
 from corota.analysis.terms.contact.problem import RightHandSides
@@ -67,9 +68,9 @@ class ContactPathEquations(ContactEquations):
 
     def __init__(self, system: System, notes: list[str]) -> None:
         super().__init__(system)
-        contact_term = self.contact_term
-        for pair in contact_term.pairs:
-            ramped = getattr(pair.item, "start", "") == "ramp" and contact_term.number == 1
+        term = self.term
+        for pair in term.pairs:
+            ramped = getattr(pair.item, "start", "") == "ramp" and term.number == 1
             if ramped and pair.overlap.any():
                 raise ModelError(
                     f"contact pair {pair.name!r} overlaps at the start, which start='ramp' would "
@@ -77,10 +78,10 @@ class ContactPathEquations(ContactEquations):
                     "start='keep' or 'adjust'",
                     pair.item.where,
                 )
-        contact_term.damps = False
+        term.damps = False
         self.notes = notes
         self.n_dofs, self.length = system.n_dofs, system.length
-        self.counted = np.concatenate([system.counted, np.zeros(contact_term.n, bool)])
+        self.counted = np.concatenate([system.counted, np.zeros(term.n, bool)])
         #: States of the direction at the committed state, with which an attempt begins.
         self._base: States | None = None
         #: Whether nothing was tried since. An attempt brings bodies into contact at the start
@@ -90,11 +91,11 @@ class ContactPathEquations(ContactEquations):
     @property
     def not_conservative(self) -> str:
         """Why pivots do not show stability."""
-        return SLIPS if any(p.friction for p in self.contact_term.pairs) else NOT_CONSERVATIVE
+        return SLIPS if any(p.friction for p in self.term.pairs) else NOT_CONSERVATIVE
 
     def restart(self, loose: bool = False, like: Evaluation | None = None) -> None:
         """Begin an attempt with the states of the last commit, or of another evaluation."""
-        self.contact_term.revert()
+        self.term.revert()
         self.forget()
         self._fresh, self.holds = False, loose
         first = (
@@ -107,13 +108,13 @@ class ContactPathEquations(ContactEquations):
         """Forces at dofs, then gaps and slips in the rows of the multipliers."""
         at = self.evaluate(z, step_time)
         parts = [at.internal]
-        for pair, terms in zip(self.contact_term.pairs, at.contact_state.terms, strict=True):
+        for pair, terms in zip(self.term.pairs, at.contact_state.terms, strict=True):
             parts += [-terms.gap, -terms.slip] if pair.two else [-terms.gap]
         return np.concatenate(parts)
 
     def load_rate(self, z: Floats) -> tuple[Floats, Floats]:
         """Change of forces and of prescribed dofs per unit of load factor, 0 for multipliers."""
-        none = np.zeros(self.contact_term.n)
+        none = np.zeros(self.term.n)
         force, move = self.system.load_rate(z[: self.n])
         return np.concatenate([force, none]), np.concatenate([move, none])
 
@@ -156,7 +157,7 @@ class ContactPathEquations(ContactEquations):
         self, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
     ) -> tuple[Point, Tangent] | None:
         """A point behind the next kinks, and the direction there."""
-        if self.contact_term.at is not None:
+        if self.term.at is not None:
             self._base = None
         found = predict_through_events(self, base, tangent, metric, size, period)
         if found is None:
@@ -174,14 +175,14 @@ class ContactPathEquations(ContactEquations):
         Where a constraint closed its pressure grows from zero; where one opened its gap does;
         so does the slip of what began to slip.
         """
-        if self.contact_term.at is None:
+        if self.term.at is None:
             return 0.0
         gaps = self.gap_rates(at, rate)
         total = 0.0
         for k, (pair, (dp, _)) in enumerate(
-            zip(self.contact_term.pairs, self.contact_term.parts(rate[self.n :]), strict=True)
+            zip(self.term.pairs, self.term.parts(rate[self.n :]), strict=True)
         ):
-            before, now = self.contact_term.at.states[k], self._settled(at)[k]
+            before, now = self.term.at.states[k], self._settled(at)[k]
             area = np.maximum(at.contact_state.terms[k].area, pair.full)
             closed, opened = (before == OPEN) & (now != OPEN), (before != OPEN) & (now == OPEN)
             total += float((dp * area)[closed].sum())
@@ -197,7 +198,7 @@ class ContactPathEquations(ContactEquations):
 
     def commit(self) -> None:
         """Accept the last evaluated state, of bodies and contact."""
-        u, self.contact_state = self.contact_term.last
+        u, self.contact_state = self.term.last
         self.system.commit()
         self.notes += self.accept(u, self.contact_state.time)
         self._base, self._fresh = None, True
@@ -209,9 +210,7 @@ class ContactPathEquations(ContactEquations):
         state = at.contact_state
         if not state.settled:
             corrected = self.last if self.corrections else None
-            before: Sequence[NDArray[np.int8] | None] = corrected or [None] * len(
-                self.contact_term.pairs
-            )
+            before: Sequence[NDArray[np.int8] | None] = corrected or [None] * len(self.term.pairs)
             state.settled = [
                 pair.states(terms, p, q, last)
                 for (pair, terms, (p, q)), last in zip(self.pairs(state), before, strict=True)
@@ -222,8 +221,8 @@ class ContactPathEquations(ContactEquations):
         """Change of weighted gaps and slips of each pair along a direction."""
         moved = np.append(rate[: self.n], 0.0)
         out = []
-        for pair, terms in zip(self.contact_term.pairs, at.contact_state.terms, strict=True):
-            du = moved[self.contact_term.dofs(terms.variables)]
+        for pair, terms in zip(self.term.pairs, at.contact_state.terms, strict=True):
+            du = moved[self.term.dofs(terms.variables)]
             gap, slip = np.zeros(pair.n), np.zeros(pair.n)
             np.add.at(gap, terms.constraint, (terms.gap_gradient * du).sum(axis=1))
             np.add.at(slip, terms.constraint, (terms.slip_gradient * du).sum(axis=1))
@@ -233,7 +232,11 @@ class ContactPathEquations(ContactEquations):
 
 def path_system(system: System, notes: list[str]) -> SmoothPath | ContactPathEquations:
     """The system for path following; `notes` collects remarks for the user."""
-    return ContactPathEquations(system, notes) if system.contact_term.pairs else SmoothPath(system)
+    return (
+        ContactPathEquations(system, notes)
+        if system.term(ContactTerm).pairs
+        else SmoothPath(system)
+    )
 
 
 #: Most changes in one increment, and share of it within which they happen at once.
@@ -267,7 +270,7 @@ def predict_through_events(
     states : list of ndarray
         Predicted at the point.
     """
-    committed = path.contact_term.at
+    committed = path.term.at
     if committed is None or not committed.states:
         return None
     way = EventPath(path, base, tangent, [s.copy() for s in committed.states])
@@ -324,14 +327,14 @@ class EventPath:
     def change(self, k: int, i: int, state: int, period: float) -> bool:
         """Give a constraint another state; False where it had it before."""
         path = self.path
-        pair = path.contact_term.pairs[k]
+        pair = path.term.pairs[k]
         slides = path.gap_rates(self.at, self.tangent.u)[k][1][i]
         if pair.friction and self.states[k][i] == OPEN and slides != 0.0:
             # A constraint that closes while sliding continues to slip, if possible.
             state, self.slip_directions[k, i] = SLIPPING, -float(np.sign(slides))
         elif state == SLIPPING:
-            q = path.contact_term.parts(self.z[path.n :])[k][1][i]
-            dq = path.contact_term.parts(self.tangent.u[path.n :])[k][1][i]
+            q = path.term.parts(self.z[path.n :])[k][1][i]
+            dq = path.term.parts(self.tangent.u[path.n :])[k][1][i]
             self.slip_directions[k, i] = 1.0 if (q or dq) > 0.0 else -1.0
         if (k, i, state) in self.seen:
             return False
@@ -365,29 +368,29 @@ class EventPath:
     def _going(self, where: tuple[int, int], before: int, state: int) -> float:
         """Positive where the direction leads into a new state."""
         (k, i), path = where, self.path
-        dp, dq = path.contact_term.parts(self.tangent.u[path.n :])[k]
+        dp, dq = path.term.parts(self.tangent.u[path.n :])[k]
         dgap, dslip = path.gap_rates(self.at, self.tangent.u)[k]
         if state == OPEN:
             return float(dgap[i])
         if before == OPEN:
             return float(dp[i])
-        q = path.contact_term.parts(self.z[path.n :])[k][1][i]
+        q = path.term.parts(self.z[path.n :])[k][1][i]
         slip_direction = self.slip_directions.get((k, i), 1.0 if q > 0.0 else -1.0)
         if state == SLIPPING:
             return float(-slip_direction * dslip[i])
         # A constraint that sticks again unloads.
-        return float(path.contact_term.pairs[k].friction * dp[i] - slip_direction * dq[i])
+        return float(path.term.pairs[k].friction * dp[i] - slip_direction * dq[i])
 
     def first(self, latest: tuple[int, int] | None) -> Event | None:
         """The next change along the direction; of several at once, that of the latest first."""
         best: Event | None = None
-        path, contact_term = self.path, self.path.contact_term
+        path, term = self.path, self.path.term
         tractions, rates = (
-            contact_term.parts(self.z[path.n :]),
-            contact_term.parts(self.tangent.u[path.n :]),
+            term.parts(self.z[path.n :]),
+            term.parts(self.tangent.u[path.n :]),
         )
         moves = path.gap_rates(self.at, self.tangent.u)
-        for k, pair in enumerate(contact_term.pairs):
+        for k, pair in enumerate(term.pairs):
             if pair.tied or pair.law is not None or not pair.n:
                 continue
             (p, q), (dp, dq), (dgap, dslip) = tractions[k], rates[k], moves[k]

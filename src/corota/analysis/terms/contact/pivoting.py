@@ -194,7 +194,7 @@ class Pivoting:
         """
         problem = self.problem
         count = 2 * sum(len(c.rows) for c in chosen)
-        force, rows = np.zeros((problem.n + 1, count)), np.zeros((problem.contact_term.n, count))
+        force, rows = np.zeros((problem.n + 1, count)), np.zeros((problem.term.n, count))
         at = 0
         for c in chosen:
             pair, terms, _ = self.pairs[c.k]
@@ -202,7 +202,7 @@ class Pivoting:
             column[c.rows] = at + 2 * np.arange(len(c.rows))
             state, slip_direction = base[c.k], slip_directions[c.k]
             acting = terms.acting
-            where = problem.contact_term.dofs(acting.variables)
+            where = problem.term.dofs(acting.variables)
             i = acting.constraint
             of_open = (column[i] >= 0) & (state[i] == OPEN)
             push = acting.gap_gradient
@@ -421,7 +421,7 @@ def responses(
     """Solutions for the first right-hand side, and for forces and rows of inputs."""
     system = problem.system
     problem.slip_directions = {
-        p.first: s for p, s in zip(problem.contact_term.pairs, slip_directions, strict=True)
+        p.first: s for p, s in zip(problem.term.pairs, slip_directions, strict=True)
     }
     coupling, own, _ = problem.coupling(at.contact_state, states)
     columns = [right_sides.force[:, 0] + system.at_nodes(coupling.force)]
@@ -447,7 +447,7 @@ def rates_of(
     for k, (pair, terms, _) in enumerate(problem.pairs(at.contact_state)):
         if only is not None and k != only:
             continue
-        where, parts = problem.contact_term.dofs(terms.variables), []
+        where, parts = problem.term.dofs(terms.variables), []
         for gradient in (terms.gap_gradient, terms.slip_gradient):
             change = np.zeros((pair.n, moved.shape[1]))
             np.add.at(change, terms.constraint, np.einsum("tv,tvc->tc", gradient, moved[where]))

@@ -15,6 +15,7 @@ from corota.analysis.linear.coupling import Coupling
 from corota.analysis.linear.saddle_point import SaddlePointSystem
 from corota.analysis.linear.triplets import Triplets
 from corota.analysis.rule import REST, Rule
+from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.linearization import linearized, stacked
 from corota.analysis.terms.contact.pair import CLOSED, SLIPPING
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.gaps import ContactState, Kink, Terms
     from corota.analysis.terms.contact.pair import Pair
 
@@ -104,19 +104,19 @@ class ContactProblem:
     def __init__(self, system: System, rule: Rule = REST) -> None:
         self.system, self.rule = system, rule
         self.evaluate = system.evaluate
-        self.contact_term: ContactTerm = system.contact_term
+        self.term = system.term(ContactTerm)
         self.n = system.n_dofs
-        self.origin: Floats = system.contact_term.u
+        self.origin: Floats = self.term.u
         self.forget()
 
     def forget(self) -> None:
         """Begin an attempt at the increment."""
         # Closed constraints stay closed while their pressure does.
         self.last: States | None = None
-        if self.contact_term.at is not None and self.contact_term.at.states:
-            self.last = [s.copy() for s in self.contact_term.at.states]
+        if self.term.at is not None and self.term.at.states:
+            self.last = [s.copy() for s in self.term.at.states]
         self.seen: dict[bytes, int] = {}
-        self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.contact_term.pairs]
+        self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.term.pairs]
         self.sliding = self.corrections = self.pivoted = 0
         self.pivoting = False
         self.least, self.waited = np.inf, 0
@@ -124,7 +124,7 @@ class ContactProblem:
         self.relaxing = False  # whether the bodies may move to another equilibrium
         #: Previous position in relaxation, for the tunneling check.
         self.since: Floats | None = None
-        self.contact_term.springs = None
+        self.term.springs = None
         #: Kink of the contact surfaces at which the bodies may rest, and how often one
         #: was tried.
         self.kink: Kink | None = None
@@ -147,11 +147,11 @@ class ContactProblem:
     @property
     def kink(self) -> Kink | None:
         """Kink of the contact surfaces at which the bodies may rest."""
-        return self.contact_term.trial_kink
+        return self.term.trial_kink
 
     @kink.setter
     def kink(self, kink: Kink | None) -> None:
-        self.contact_term.trial_kink = kink
+        self.term.trial_kink = kink
 
     def complementarity(self, at: Evaluation) -> tuple[float, int, int]:
         """Largest contact residual as a force; its pair and constraint."""
@@ -174,7 +174,7 @@ class ContactProblem:
 
     def freeze(self) -> None:
         self.corrections += 1
-        for pair in self.contact_term.pairs:
+        for pair in self.term.pairs:
             pair.frozen = self.corrections >= CORRECTIONS_BEFORE_FREEZE
 
     def solve(
@@ -192,24 +192,24 @@ class ContactProblem:
     @property
     def border(self) -> SaddlePointSystem:
         """Linear algebra, kept with the system."""
-        border = self.contact_term.border
+        border = self.term.border
         if border is None:
-            ties = sum(pair.width for pair in self.contact_term.pairs if pair.tied)
-            border = SaddlePointSystem(self.system, self.contact_term.n, ties)
-            self.contact_term.border = border
+            ties = sum(pair.width for pair in self.term.pairs if pair.tied)
+            border = SaddlePointSystem(self.system, self.term.n, ties)
+            self.term.border = border
         return border
 
     def pairs(self, contact_state: ContactState) -> Iterator[Each]:
         return zip(
-            self.contact_term.pairs,
+            self.term.pairs,
             contact_state.terms,
-            self.contact_term.parts(contact_state.multipliers),
+            self.term.parts(contact_state.multipliers),
             strict=True,
         )
 
     def coupling(self, contact_state: ContactState, states: States) -> tuple[Coupling, Floats, int]:
         """The border for states, its right-hand side, and its negative pivots."""
-        return linearized(self.contact_term, contact_state, states, self.slip_directions)
+        return linearized(self.term, contact_state, states, self.slip_directions)
 
 
 #: Compliance of closed constraints relative to that of their nodes: constraints that follow from
@@ -232,26 +232,26 @@ def linearized_contact(
     time : float
         Step time.
     """
-    contact_term = system.contact_term
-    if not contact_term.pairs:
+    term = system.term(ContactTerm)
+    if not term.pairs:
         none, entries = np.zeros(0), Triplets.join([])
         coupling = Coupling(entries, entries, entries, entries, none, none, lambda: stacked([]))
-        return system.evaluate(u.copy(), time), coupling, [], contact_term.law_multipliers()
+        return system.evaluate(u.copy(), time), coupling, [], term.law_multipliers()
     if multipliers is None:
-        multipliers = contact_term.committed
+        multipliers = term.committed
     contact = ContactProblem(system)
     at = system.evaluate(np.concatenate([u, multipliers]), time)
-    if states is None and contact_term.at is not None and contact_term.at.states:
-        states = contact_term.at.states
+    if states is None and term.at is not None and term.at.states:
+        states = term.at.states
     elif states is None:
         states = [
             pair.states(terms, p, q) for pair, terms, (p, q) in contact.pairs(at.contact_state)
         ]
     states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
-    contact.slip_directions = {p.first: np.ones(p.n) for p in contact_term.pairs}
+    contact.slip_directions = {p.first: np.ones(p.n) for p in term.pairs}
     coupling = contact.coupling(at.contact_state, states)[0]
-    own, hard = np.zeros(contact_term.n), np.zeros(contact_term.n, bool)
-    for pair in contact_term.pairs:
+    own, hard = np.zeros(term.n), np.zeros(term.n, bool)
+    for pair in term.pairs:
         part = pair.full / pair.stiffness
         own[pair.first : pair.first + pair.width] = np.tile(part, pair.width // pair.n)
         hard[pair.first : pair.first + pair.width] = pair.law is None
@@ -259,8 +259,8 @@ def linearized_contact(
         hard[pair.first + pair.n : pair.first + pair.width] = True
     bare = hard & (coupling.diagonal <= 0.0)
     coupling.diagonal[bare] = -COMPLIANCE * own[bare]
-    contact_term.revert()
-    return at, coupling, states, contact_term.law_multipliers()
+    term.revert()
+    return at, coupling, states, term.law_multipliers()
 
 
 __all__ = ["COMPLIANCE", "ContactProblem", "RightHandSides", "linearized_contact"]

@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.newton import ResidualNorms, Settings
     from corota.analysis.terms.contact.pair import Terms
+    from corota.analysis.terms.contact.problem import ContactProblem
 
     Floats = NDArray[np.float64]
 
@@ -122,10 +123,10 @@ class _Creep:
         self.within: Floats | None = None
         #: Whether a damped motion has brought the bodies to where they are.
         self.moved = False
-        edges = [float(p.slave.length.min()) for p in self.problem.contact_term.pairs]
+        edges = [float(p.slave.length.min()) for p in self.problem.term.pairs]
         self.edge = min(edges)
         self.farthest = FARTHEST * self.edge
-        self.stiffness = self.problem.contact_term.nodal
+        self.stiffness = self.problem.term.nodal
 
     def run(self, motion: bool) -> Outcome:
         """Positions until one needs no springs."""
@@ -174,18 +175,18 @@ class _Creep:
 
     def _from_rest(self) -> Outcome:
         """An equilibrium without springs, from where a damped motion brings the bodies to rest."""
-        n, term = self.problem.n, self.system.contact_term
+        problem, n, term = self.problem, self.problem.n, self.problem.term
         begin, left = self.z, self.left
         reason = "a damped motion did not bring the bodies to rest"
         out: Outcome = Outcome(False, begin, None, reason=reason)
         for remains in REMAINS:
-            rest = come_to_rest(self.system, begin[:n], left, self.step_time, self.edge, remains)
+            rest = come_to_rest(problem, begin[:n], left, self.step_time, self.edge, remains)
             if rest is None:
                 term.revert()
                 continue
             self.moved = True
             self.z, self.left = np.concatenate([rest.u, rest.multipliers]), np.zeros_like(left)
-            self.problem.last = [states.copy() for states in rest.states]
+            problem.last = [states.copy() for states in rest.states]
             term.slip_start = rest.u  # friction of the motion is over
             out = self._place(0.0)
             if out.converged and out.at is not None:
@@ -213,7 +214,7 @@ class _Creep:
         problem.last, problem.relaxing = states, True
         problem.since = self.z[: problem.n].copy()
         if share:
-            self.system.contact_term.springs = (share * self.stiffness, problem.since)
+            problem.term.springs = (share * self.stiffness, problem.since)
 
     def _place(self, share: float) -> Outcome:
         """The next position, with springs of a fraction of the nodal stiffness."""
@@ -299,7 +300,12 @@ class _Forces(ForwardContact):
 
 
 def come_to_rest(
-    system: System, u: Floats, left: Floats, step_time: float, edge: float, remains: float = 1.0
+    problem: ContactProblem,
+    u: Floats,
+    left: Floats,
+    step_time: float,
+    edge: float,
+    remains: float = 1.0,
 ) -> Rest | None:
     """Move from a position until the bodies rest; None if they do not.
 
@@ -315,11 +321,12 @@ def come_to_rest(
     remains : float
         Fraction of an overlap that remains after an increment.
     """
+    system = problem.system
     if system.link.couples:
         return None  # eliminated dofs make the mass matrix full
     held = system.conditions.constrained
     u, v = u.copy(), np.zeros_like(u)
-    contact = _Forces(system.contact_term, Energies(system), 1.0)
+    contact = _Forces(problem.term, Energies(system), 1.0)
     contact.remains = remains
     parts = max(1, int(np.ceil(float(np.abs(left).max()) / (LONGEST_STEP * edge))))
     mass = np.ones_like(u)

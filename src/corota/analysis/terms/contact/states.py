@@ -31,9 +31,7 @@ MAX_REPEATS_BEFORE_CUTBACK = 7
 
 def chosen(problem: ContactProblem, contact_state: ContactState) -> States:
     """States for the next correction; the whole linearized problem once a set comes back."""
-    before: Sequence[NDArray[np.int8] | None] = problem.last or [None] * len(
-        problem.contact_term.pairs
-    )
+    before: Sequence[NDArray[np.int8] | None] = problem.last or [None] * len(problem.term.pairs)
     wanted = [
         pair.states(terms, p, q, last)
         for (pair, terms, (p, q)), last in zip(problem.pairs(contact_state), before, strict=True)
@@ -75,7 +73,7 @@ def columns(
         for pair, terms, (p, q) in problem.pairs(at.contact_state)
     }
     for (k, i), slip_direction in (slip_directions or {}).items():
-        problem.slip_directions[problem.contact_term.pairs[k].first][i] = slip_direction
+        problem.slip_directions[problem.term.pairs[k].first][i] = slip_direction
     du, dp, negative, states = held(problem, at, states, right_sides)
     for (pair, terms, (p, q)), state in zip(problem.pairs(at.contact_state), states, strict=True):
         if pair.two:
@@ -181,7 +179,7 @@ def far(problem: ContactProblem, du: Floats, right_sides: RightHandSides) -> boo
     constrained = 2.0 * float(
         np.abs(problem.system.by_node(right_sides.constrained[:, 0])[:, :2]).max()
     )
-    for pair in problem.contact_term.pairs:
+    for pair in problem.term.pairs:
         if pair.friction and np.abs(moved[pair.slave.node_list]).max() > pair.reach + constrained:
             return True
     return False
@@ -219,7 +217,7 @@ def _close_some(
         return du, dp, negative, tried
     open_pairs = [
         pair.name
-        for pair, s in zip(problem.contact_term.pairs, states, strict=True)
+        for pair, s in zip(problem.term.pairs, states, strict=True)
         if not (s != OPEN).any()
     ]
     if open_pairs:
