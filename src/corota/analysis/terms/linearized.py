@@ -19,7 +19,8 @@ from scipy.sparse.linalg import SuperLU, splu
 from corota.analysis.linear.factor import Factor
 from corota.analysis.linear.triplets import Triplets, nonempty_columns
 from corota.analysis.terms.attachments import Attachments
-from corota.analysis.terms.contact.problem import COMPLIANCE, linearized_contact
+from corota.analysis.terms.contact.gaps import COMPLIANCE
+from corota.analysis.terms.contact.problem import linearized_contact
 from corota.analysis.terms.damping import damping_matrix
 from corota.analysis.terms.inertia import Inertia
 from corota.errors import SingularError, UnsupportedError

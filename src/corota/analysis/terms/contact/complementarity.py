@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
+from corota.analysis.terms.contact.gaps import CLOSED, COMPLIANCE, HALVINGS, OPEN, SLIPPING
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -106,15 +106,10 @@ def _leaving(
     return int(tied[np.argmax(column[tied])])
 
 
-#: Fraction of its diagonal that makes a semidefinite matrix definite: redundant constraints share
-#: the force.
-RIDGE = 1e-10
 #: Changes of the set before sweeps, and most sweeps.
 CHANGES, SWEEPS = 30, 5000
 #: Relative change of a force, or error of a law, that is rounding.
-SAME = 1e-12
-#: Halvings that find the force of a law.
-HALVINGS = 60
+ROUNDING = 1e-12
 
 
 @dataclass
@@ -198,7 +193,7 @@ class UnilateralConstraints:
             soft = self.soft + self.share * (gap - self.gap)
             pressure, slope = self._follow(soft)
             missed = np.abs(z[: self.m] - pressure)[self._ruled]
-            rounding = SAME * pressure.max(initial=0.0) - slope * self.tolerance
+            rounding = ROUNDING * pressure.max(initial=0.0) - slope * self.tolerance
             settled = bool((missed <= rounding[self._ruled]).all())
             after, turned = self._update(state, sense, z, gap, slip, slope)
             if (after == state).all() and (turned == sense).all() and settled:
@@ -231,7 +226,7 @@ class UnilateralConstraints:
         at = place[ruled]
         rows[at] *= self.share[ruled, None]
         rest[at] = soft[ruled] - self.soft[ruled] + pressure[ruled] / -slope[ruled]
-        ridge = RIDGE * self._diagonal[free]
+        ridge = COMPLIANCE * self._diagonal[free]
         ridge[at] = 1.0 / -slope[ruled]
         rows[np.diag_indices(len(rows))] += ridge
         z[free] = np.linalg.solve(rows, rest)
@@ -259,7 +254,7 @@ class UnilateralConstraints:
         after[hard & (state == OPEN) & (gap < -self.tolerance)] = CLOSED
         after[self._ruled & (state == OPEN) & (slope != 0.0)] = CLOSED
         slips = ((state == CLOSED) & ~self.tied)[of]
-        slips &= np.abs(q) > self.friction * p[of] * (1.0 + SAME)
+        slips &= np.abs(q) > self.friction * p[of] * (1.0 + ROUNDING)
         after[of[slips]] = SLIPPING
         sense = np.where(slips, np.where(q > 0.0, 1.0, -1.0), sense)
         turned = (state == SLIPPING)[of] & (sense * slip > self.tolerance[of])
@@ -297,7 +292,7 @@ class UnilateralConstraints:
                         new = max(new, 0.0)
                     z[row] = new
                     change = max(change, abs(new - old) * d[row])
-            if change <= SAME * size:
+            if change <= ROUNDING * size:
                 return z
         return None
 
@@ -306,7 +301,7 @@ class UnilateralConstraints:
         p, q = z[: self.m], z[self.m :]
         state = np.where((p > 0.0) | self.tied, CLOSED, OPEN).astype(np.int8)
         bound = self.friction * p[self.of]
-        slips = (np.abs(q) >= bound * (1.0 - SAME)) & (p[self.of] > 0.0) & ~self.tied[self.of]
+        slips = (np.abs(q) >= bound * (1.0 - ROUNDING)) & (p[self.of] > 0.0) & ~self.tied[self.of]
         state[self.of[slips]] = SLIPPING
         return state, np.where(q > 0.0, 1.0, -1.0)
 

@@ -130,7 +130,9 @@ class ContactTerm(Term):
         self.last = self.u, no_contact()
         #: Stiffness at each dof and displacements of springs that relaxation attaches.
         self.springs: tuple[Floats, Floats] | None = None
-        self.reported_constraints: set[int] = set()  # dropped constraints that were reported
+        #: Dropped constraints that were reported, and whether an unconstrained body was.
+        self.reported_constraints: set[int] = set()
+        self.reported_loose = False
         self.border: SaddlePointSystem | None = (
             None  # linear algebra with the multipliers, made when needed
         )

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms
+from corota.analysis.terms.contact.gaps import WAITED
 from corota.analysis.terms.contact.impact import impact_error
 from corota.analysis.terms.contact.kinks import along_kink, both_sides, keeps_kink
 from corota.analysis.terms.contact.messages import explanation
@@ -39,14 +40,9 @@ MAX_LISTED = 8
 MAX_EXTRA_CONTACT_ITERATIONS = 24
 #: Iterations without progress before an increment is cut: few that take more converge.
 PATIENCE = 8
-#: The same before states come from the whole linearized problem.
-ITERATIONS_BEFORE_PIVOTING = 3
 #: Displacement of an increment, relative to its first correction, that counts as a jump, driven by
 #: supports and by forces.
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
-
-#: Marks the remark on an unconstrained body, in place of a constraint.
-FLOATS = -1
 
 
 class ContactEquations(ContactProblem):
@@ -94,7 +90,7 @@ class ContactEquations(ContactProblem):
             corrected = along_kink(self, at, right_sides)
             if corrected is not None:
                 return corrected
-        self.pivoting = self.pivoting or self.waited >= ITERATIONS_BEFORE_PIVOTING
+        self.pivoting = self.pivoting or self.waited >= WAITED
         if self.pivoting:
             self.freeze()
             found = pivoted(self, at, right_sides)
@@ -208,8 +204,8 @@ class ContactEquations(ContactProblem):
         self.term.accept(u, self.contact_state, step_time)
         self.term.kink = None if self.kink is None else replace(self.kink, base=None)
         notes = []
-        if self.loose and not self.presses and FLOATS not in self.term.reported_constraints:
-            self.term.reported_constraints.add(FLOATS)
+        if self.loose and not self.presses and not self.term.reported_loose:
+            self.term.reported_loose = True
             notes.append(
                 f"no contact is closed, and {self.loose}: the position of that body is "
                 "undetermined until contact or a support constrains it"

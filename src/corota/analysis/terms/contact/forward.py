@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 
 #: Rounds in which forces close further constraints.
 ROUNDS = 20
-#: Square of the frequency of a mass on a law, times dt^2, beyond which the law is not resolved.
-RESOLVED = 1.0
 #: Size of a matrix from which it is treated as sparse.
 DENSE = 100_000
 #: Depth, in edges, that a fixed surface may be pressed into another fixed one.
@@ -357,7 +355,8 @@ class _Increment:
         deepest = np.minimum(self.gap, self.gap - self.travel)[normal]
         for some, law in laws:
             square = -law(some, deepest[some])[1] * np.diagonal(matrix)[some] / self.share
-            stiff[some] = square > RESOLVED
+            # Beyond a frequency of 1/dt the increment does not resolve the law.
+            stiff[some] = square > 1.0
         problem = UnilateralConstraints(
             matrix,
             self.gap[normal],

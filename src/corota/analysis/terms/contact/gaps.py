@@ -18,8 +18,15 @@ if TYPE_CHECKING:
 OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Fraction of its full area below which a node counts as uncovered.
 COVERED = 1e-9
-#: Force beyond a side that is rounding, over the jump.
-BEYOND = 1e-9
+#: Relative difference of lengths, of parts of a way and of forces that is rounding.
+SAME = 1e-9
+#: Compliance of closed constraints relative to that of their nodes: constraints that follow from
+#: others then leave a matrix regular, and share the force.
+COMPLIANCE = 1e-10
+#: Bisections of an interval, to its rounding.
+HALVINGS = 44
+#: Iterations without progress before all states are chosen together, or a kink is searched.
+WAITED = 3
 
 
 @dataclass
@@ -141,7 +148,7 @@ class Kink:
     def excess(self) -> float:
         """Force beyond those of both sides [force]."""
         over = max(-self.share, self.share - 1.0)
-        return over * float(np.abs(self.jump).max()) if over > BEYOND else 0.0
+        return over * float(np.abs(self.jump).max()) if over > SAME else 0.0
 
     def follow(self, u: Floats) -> None:
         """Take the share that belongs to a trial, which may be part of a correction."""
@@ -158,4 +165,17 @@ def no_contact() -> ContactState:
     return ContactState([], np.zeros(0), np.zeros(0), np.zeros(0))
 
 
-__all__ = ["CLOSED", "COVERED", "OPEN", "SLIPPING", "ContactState", "Kink", "Terms", "no_contact"]
+__all__ = [
+    "CLOSED",
+    "COMPLIANCE",
+    "COVERED",
+    "HALVINGS",
+    "OPEN",
+    "SAME",
+    "SLIPPING",
+    "WAITED",
+    "ContactState",
+    "Kink",
+    "Terms",
+    "no_contact",
+]

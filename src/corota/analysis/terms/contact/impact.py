@@ -31,9 +31,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: First contact may be found so late, over the tolerance of the step [slave edges].
-FIRST = 1.0
-
 
 def impact_error(
     term: ContactTerm,
@@ -62,7 +59,7 @@ def impact_error(
     meets : bool
         Whether the increment was to end where surfaces meet.
     """
-    first = _first_contact(term, contact_state, meets) / (FIRST * tolerance)
+    first = _first_contact(term, contact_state, meets) / tolerance
     if term.persistent:
         depth = 0.0
         for pair, terms in zip(term.pairs, contact_state.terms, strict=True):

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.failure import GiveUp
-from corota.analysis.terms.contact.gaps import Kink
+from corota.analysis.terms.contact.gaps import HALVINGS, WAITED, Kink
 from corota.analysis.terms.contact.problem import RightHandSides
 from corota.analysis.terms.contact.states import chosen, columns
 
@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Halvings of the interval in which a jump is searched.
-HALVINGS = 44
 #: Share of a difference of contact forces that must be a jump.
 JUMP = 0.25
 #: Part of the way, and share of the least jump: forces that differ by less on so short a way change
@@ -210,8 +208,6 @@ def _kink(
     return Kink(-pressures / size, -moves / size, jump) if size > 0.0 else None
 
 
-#: Iterations without progress after which a kink is searched.
-WAITED = 3
 #: Kinks that an attempt tries, and corrections in which one may carry a force above its jump.
 MAX_KINKS, MAX_BEYOND = 3, 3
 #: Fractions of the jump between which an equilibrium is searched: beyond, the bodies do not rest

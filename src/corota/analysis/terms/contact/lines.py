@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-NO_EDGES: Ints = np.zeros((0, 3), np.int64)
-NO_NUMBERS: Floats = np.zeros(0)
-
 
 def line_surface(system: NumberedModel, name: str, edges: Ints, item: ContactPair | Tie) -> Surface:
     """Lines of a surface, with the distance to their surfaces: half the height of the section.
@@ -67,9 +64,8 @@ def node_surface(system: NumberedModel, name: str, nodes: Ints, item: ContactPai
     if not len(nodes):
         raise ModelError(f"contact pair {item.name!r}: node set {name!r} is empty", item.where)
     spacing = _spacing(system)[nodes]
-    found = Surface(name, NO_EDGES[:, :2], NO_EDGES, NO_NUMBERS, NO_NUMBERS, spacing, NO_NUMBERS)
-    found.points = distinct(nodes)
-    return found
+    edges, flat = np.zeros((0, 3), np.int64), np.zeros(0)
+    return Surface(name, edges[:, :2], edges, flat, flat, spacing, flat, distinct(nodes))
 
 
 def _spacing(system: NumberedModel) -> Floats:
@@ -108,7 +104,8 @@ def line_core(
     wide = max(0.0, slave.half.max(initial=0.0), *_half(master))
     reach += wide
     x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
-    none = (NO_EDGES, NO_NUMBERS, NO_NUMBERS)
+    flat = np.zeros(0)
+    none = (np.zeros((0, 3), np.int64), flat, flat)
     rigid = None
     other = none
     if isinstance(master, RigidCurve):
@@ -127,7 +124,7 @@ def line_core(
         core = _core.line_contact(
             x,
             own,
-            slave.thickness if not len(points) else NO_NUMBERS,
+            slave.thickness if not len(points) else flat,
             points,
             other,
             rigid,

@@ -23,7 +23,7 @@ import numpy as np
 from corota.analysis.path_system import NOT_CONSERVATIVE, Metric, Point, SmoothPath, Tangent
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import MAX_EXTRA_CONTACT_ITERATIONS, ContactEquations
-from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
+from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SAME, SLIPPING
 from corota.analysis.terms.contact.problem import RightHandSides
 from corota.analysis.terms.contact.states import chosen, columns
 from corota.errors import ModelError, SingularError
@@ -177,7 +177,7 @@ class ContactPathEquations(ContactEquations):
         """
         if self.term.at is None:
             return 0.0
-        gaps = self.gap_rates(at, rate)
+        gaps = self.gap_rates(at, rate[: self.n])
         total = 0.0
         for k, (pair, (dp, _)) in enumerate(
             zip(self.term.pairs, self.term.parts(rate[self.n :]), strict=True)
@@ -217,18 +217,6 @@ class ContactPathEquations(ContactEquations):
             ]
         return state.settled
 
-    def gap_rates(self, at: Evaluation, rate: Floats) -> list[tuple[Floats, Floats]]:
-        """Change of weighted gaps and slips of each pair along a direction."""
-        moved = np.append(rate[: self.n], 0.0)
-        out = []
-        for pair, terms in zip(self.term.pairs, at.contact_state.terms, strict=True):
-            du = moved[self.term.dofs(terms.variables)]
-            gap, slip = np.zeros(pair.n), np.zeros(pair.n)
-            np.add.at(gap, terms.constraint, (terms.gap_gradient * du).sum(axis=1))
-            np.add.at(slip, terms.constraint, (terms.slip_gradient * du).sum(axis=1))
-            out.append((gap, slip))
-        return out
-
 
 def path_system(system: System, notes: list[str]) -> SmoothPath | ContactPathEquations:
     """The system for path following; `notes` collects remarks for the user."""
@@ -239,8 +227,8 @@ def path_system(system: System, notes: list[str]) -> SmoothPath | ContactPathEqu
     )
 
 
-#: Most changes in one increment, and share of it within which they happen at once.
-MOST_EVENTS, AT_ONCE = 12, 1e-9
+#: Most changes in one increment.
+MOST_EVENTS = 12
 
 
 def predict_through_events(
@@ -282,7 +270,7 @@ def predict_through_events(
         distance, k, i, state = event
         way.go(distance)
         left -= distance
-        if met is None or distance > AT_ONCE * size:
+        if met is None or distance > SAME * size:
             met = ((k, i), int(way.states[k][i]), state)
         if not way.change(k, i, state, period) or not way.turn(metric, *met):
             return None
@@ -319,7 +307,7 @@ class EventPath:
 
     def go(self, distance: float) -> None:
         """Go on along the direction."""
-        rates = self.path.gap_rates(self.at, self.tangent.u)
+        rates = self.path.gap_rates(self.at, self.tangent.u[: self.path.n])
         self.gaps = [gap + distance * rate for gap, (rate, _) in zip(self.gaps, rates, strict=True)]
         self.z = self.z + distance * self.tangent.u
         self.factor += distance * self.tangent.factor
@@ -328,7 +316,7 @@ class EventPath:
         """Give a constraint another state; False where it had it before."""
         path = self.path
         pair = path.term.pairs[k]
-        slides = path.gap_rates(self.at, self.tangent.u)[k][1][i]
+        slides = path.gap_rates(self.at, self.tangent.u[: path.n])[k][1][i]
         if pair.friction and self.states[k][i] == OPEN and slides != 0.0:
             # A constraint that closes while sliding continues to slip, if possible.
             state, self.slip_directions[k, i] = SLIPPING, -float(np.sign(slides))
@@ -369,7 +357,7 @@ class EventPath:
         """Positive where the direction leads into a new state."""
         (k, i), path = where, self.path
         dp, dq = path.term.parts(self.tangent.u[path.n :])[k]
-        dgap, dslip = path.gap_rates(self.at, self.tangent.u)[k]
+        dgap, dslip = path.gap_rates(self.at, self.tangent.u[: path.n])[k]
         if state == OPEN:
             return float(dgap[i])
         if before == OPEN:
@@ -389,7 +377,7 @@ class EventPath:
             term.parts(self.z[path.n :]),
             term.parts(self.tangent.u[path.n :]),
         )
-        moves = path.gap_rates(self.at, self.tangent.u)
+        moves = path.gap_rates(self.at, self.tangent.u[: path.n])
         for k, pair in enumerate(term.pairs):
             if pair.tied or pair.law is not None or not pair.n:
                 continue

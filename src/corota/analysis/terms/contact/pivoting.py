@@ -141,7 +141,7 @@ class Pivoting:
         problem = self.problem
         n, more = problem.n, False
         wanted = []
-        moves = rates_of(problem, self.at, z[:n])
+        moves = problem.gap_rates(self.at, z[:n])
         for k, (pair, terms, (p, q)) in enumerate(self.pairs):
             mask = np.zeros(pair.n, bool)
             for c in chosen:
@@ -234,7 +234,7 @@ class Pivoting:
         """Pressure, gap, slip and traction as forces: values, then changes by inputs."""
         problem = self.problem
         pair, terms, (p, q) = self.pairs[c.k]
-        (moves,) = rates_of(problem, self.at, du, c.k)
+        (moves,) = problem.gap_rates(self.at, du, c.k)
         gap, slip = moves[0][c.rows], moves[1][c.rows]
         gap[:, 0] += terms.gap[c.rows]
         slip[:, 0] += terms.slip[c.rows]
@@ -435,25 +435,6 @@ def responses(
         at, coupling, np.column_stack(columns), both, release, constrained
     )
     return du, dp
-
-
-def rates_of(
-    problem: ContactProblem, at: Evaluation, du: Floats, only: int | None = None
-) -> list[tuple[Floats, Floats]]:
-    """Changes of weighted gaps and slips of each pair, or one, with columns of displacements."""
-    moved = np.stack([problem.system.in_space(u) for u in du.reshape(problem.n, -1).T], axis=1)
-    moved = np.concatenate([moved, np.zeros((1, moved.shape[1]))])
-    out = []
-    for k, (pair, terms, _) in enumerate(problem.pairs(at.contact_state)):
-        if only is not None and k != only:
-            continue
-        where, parts = problem.term.dofs(terms.variables), []
-        for gradient in (terms.gap_gradient, terms.slip_gradient):
-            change = np.zeros((pair.n, moved.shape[1]))
-            np.add.at(change, terms.constraint, np.einsum("tv,tvc->tc", gradient, moved[where]))
-            parts.append(change if du.ndim > 1 else change[:, 0])
-        out.append((parts[0], parts[1]))
-    return out
 
 
 __all__ = ["pivoted"]

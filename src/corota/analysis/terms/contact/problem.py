@@ -16,8 +16,8 @@ from corota.analysis.linear.saddle_point import SaddlePointSystem
 from corota.analysis.linear.triplets import Triplets
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm
+from corota.analysis.terms.contact.gaps import CLOSED, COMPLIANCE, SLIPPING
 from corota.analysis.terms.contact.linearization import linearized, stacked
-from corota.analysis.terms.contact.pair import CLOSED, SLIPPING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -207,14 +207,27 @@ class ContactProblem:
             strict=True,
         )
 
+    def gap_rates(
+        self, at: Evaluation, du: Floats, only: int | None = None
+    ) -> list[tuple[Floats, Floats]]:
+        """Changes of weighted gaps and slips of each pair, or one, by columns of displacements."""
+        moved = np.stack([self.system.in_space(u) for u in du.reshape(self.n, -1).T], axis=1)
+        moved = np.concatenate([moved, np.zeros((1, moved.shape[1]))])
+        out = []
+        for k, (pair, terms, _) in enumerate(self.pairs(at.contact_state)):
+            if only is not None and k != only:
+                continue
+            where, parts = self.term.dofs(terms.variables), []
+            for gradient in (terms.gap_gradient, terms.slip_gradient):
+                change = np.zeros((pair.n, moved.shape[1]))
+                np.add.at(change, terms.constraint, np.einsum("tv,tvc->tc", gradient, moved[where]))
+                parts.append(change if du.ndim > 1 else change[:, 0])
+            out.append((parts[0], parts[1]))
+        return out
+
     def coupling(self, contact_state: ContactState, states: States) -> tuple[Coupling, Floats, int]:
         """The border for states, its right-hand side, and its negative pivots."""
         return linearized(self.term, contact_state, states, self.slip_directions)
-
-
-#: Compliance of closed constraints relative to that of their nodes: constraints that follow from
-#: others then leave the matrix regular.
-COMPLIANCE = 1e-10
 
 
 def linearized_contact(
@@ -263,4 +276,4 @@ def linearized_contact(
     return at, coupling, states, term.law_multipliers()
 
 
-__all__ = ["COMPLIANCE", "ContactProblem", "RightHandSides", "linearized_contact"]
+__all__ = ["ContactProblem", "RightHandSides", "linearized_contact"]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import corota._core as _core
+from corota.analysis.terms.contact.gaps import SAME
 from corota.analysis.terms.contact.lines import line_core, line_surface, node_surface
 from corota.analysis.terms.contact.surface import Surface, carrier, smoothed
 from corota.errors import ModelError
@@ -28,9 +29,8 @@ if TYPE_CHECKING:
 
 #: Default search distance of pairs, in edges.
 REACH = 4.0
-#: Limit of slave edges times boundary edges for the search of the thickness behind a surface, and
-#: relative lengths that count as zero.
-MOST_LOOKED_AT, SAME = 20_000_000, 1e-9
+#: Limit of edges times edges that are compared all with all.
+MOST_LOOKED_AT = 20_000_000
 
 
 def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -> Surface:
@@ -337,7 +337,7 @@ def _check_pair(
         )
     out_s, out_m = _normals(mesh.points, slave), _normals(mesh.points, master)
     # No edges face each other: bodies may rotate, but not before contact.
-    facing = -(out_s @ out_m.T).min() if len(out_s) * len(out_m) < 4_000_000 else 1.0
+    facing = -(out_s @ out_m.T).min() if len(out_s) * len(out_m) <= MOST_LOOKED_AT else 1.0
     towards = _towards(mesh.points, slave, master, out_s)
     if facing <= 0.0 or not towards:
         raise ModelError(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.terms.contact.gaps import SAME
 from corota.analysis.terms.contact.tunneling import AT_ONCE, other_side
 from corota.errors import ModelError
 from corota.mesh.parts import nodes_of_cells, part_of_nodes, parts_without
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 #: Cosine between the normals of slave and curve from which the slave faces away; as far on the
 #: other side it faces the curve, and between them neither.
 BACK = 0.2
-#: Distances that are equal, in slave edges.
-SAME = 1e-9
 
 
 def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
+from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SAME, SLIPPING
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
@@ -33,8 +33,6 @@ UNSEEN = 0.5
 TOUCHES = 1e-8
 #: Rotation of a side in an increment [rad] up to which its ways count as straight.
 TURNS = 0.2
-#: Distance of two ends that are one point, of the size of the side.
-SAME = 1e-6
 #: Nodes times pieces that are compared at once.
 AT_ONCE = 1_000_000
 #: Angle of the chords of arcs [rad].
