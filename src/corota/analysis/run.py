@@ -26,7 +26,7 @@ from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
 from corota.analysis.terms.contact.messages import missed_peaks, pair_forces
-from corota.analysis.terms.contact.passed_through import passed_through
+from corota.analysis.terms.contact.side import passed_through
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.display import brief
 from corota.errors import (

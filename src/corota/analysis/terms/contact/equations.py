@@ -22,7 +22,6 @@ from corota.analysis.terms.contact.kinks import along_kink, both_sides, keeps_ki
 from corota.analysis.terms.contact.messages import explanation
 from corota.analysis.terms.contact.pivoting import pivoted
 from corota.analysis.terms.contact.problem import ContactProblem, RightHandSides
-from corota.analysis.terms.contact.states import chosen, columns
 from corota.analysis.terms.contact.tunneling import outside, passed
 
 if TYPE_CHECKING:
@@ -102,7 +101,7 @@ class ContactEquations(ContactProblem):
                 self.pivoted += 1
                 self.stage = "contact states by pivoting"
                 return self.moved(z), -1
-        z, negative = columns(self, at, right_sides, chosen(self, at.contact_state))
+        z, negative = self.columns(at, right_sides, self.chosen(at.contact_state))
         self.stage = ""
         return self.moved(z[:, 0]), negative
 

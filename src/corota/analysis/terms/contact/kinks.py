@@ -20,7 +20,6 @@ import numpy as np
 from corota.analysis.failure import GiveUp
 from corota.analysis.terms.contact.gaps import HALVINGS, WAITED, Kink
 from corota.analysis.terms.contact.problem import RightHandSides
-from corota.analysis.terms.contact.states import chosen, columns
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -266,7 +265,7 @@ def along_kink(
         np.column_stack([right_sides.constrained[:, 0], np.zeros(problem.n)]),
         np.array([1.0, 0.0]),
     )
-    z, negative = columns(problem, at, both, chosen(problem, at.contact_state))
+    z, negative = problem.columns(at, both, problem.chosen(at.contact_state))
     first, second = kink.normal @ z[: problem.n]
     if second == 0.0:
         problem.kink = None

@@ -25,7 +25,6 @@ from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import MAX_EXTRA_CONTACT_ITERATIONS, ContactEquations
 from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SAME, SLIPPING
 from corota.analysis.terms.contact.problem import RightHandSides
-from corota.analysis.terms.contact.states import chosen, columns
 from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:
@@ -126,7 +125,7 @@ class ContactPathEquations(ContactEquations):
             np.stack([np.zeros(n), move[:n]], axis=1),
             np.array([1.0, 0.0]),
         )
-        x, _ = columns(self, at, right_sides, chosen(self, at.contact_state))
+        x, _ = self.columns(at, right_sides, self.chosen(at.contact_state))
         return x[:, 0], x[:, 1]
 
     def rate(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, int]:
@@ -150,7 +149,7 @@ class ContactPathEquations(ContactEquations):
         """The same with given states, and senses of slip of some (pair, constraint)."""
         self.holds = False
         right_sides = RightHandSides(force[: self.n, None], move[: self.n, None], np.zeros(1))
-        x, negative = columns(self, at, right_sides, states, slip_directions)
+        x, negative = self.columns(at, right_sides, states, slip_directions)
         return x[:, 0], negative
 
     def around(

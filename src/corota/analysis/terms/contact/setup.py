@@ -9,8 +9,14 @@ import numpy as np
 
 import corota._core as _core
 from corota.analysis.terms.contact.gaps import SAME
-from corota.analysis.terms.contact.lines import line_core, line_surface, node_surface
-from corota.analysis.terms.contact.surface import Surface, carrier, smoothed
+from corota.analysis.terms.contact.surface import (
+    Surface,
+    carrier,
+    line_core,
+    line_surface,
+    node_surface,
+    smoothed,
+)
 from corota.errors import ModelError
 from corota.mesh.kinds import EDGES
 from corota.mesh.parts import part_of_cells
