@@ -207,16 +207,19 @@ class ReducedMass(FreeMass):
             "increment, or an implicit scheme"
         )
 
-    def refuse_contact(self, nodes: NDArray[np.int64], where: Location | None) -> None:
+    def refuse_contact(self, mine: NDArray[np.bool_], where: Location | None) -> None:
         """Refuse contact at nodes whose motion is coupled to that of others by mass.
+
+        Parameters
+        ----------
+        mine : ndarray of bool, shape (n_nodes,)
+            Nodes in contact.
 
         Raises
         ------
         UnsupportedError
         """
         system = self.system
-        mine = np.zeros(len(system.per_node), bool)
-        mine[nodes] = True
         bad = mine[system.node_of_dof] & self.carried & (self.inverse == 0.0)
         if bad.any():
             raise UnsupportedError(
