@@ -4,7 +4,7 @@
 
 use super::about_mean::AboutMean;
 use super::dilatation::{Dilatation, by_modes, times};
-use super::law_tape::LawTape;
+use super::law_tape::{LawTape, Way};
 use super::local_strain::{LocalStrain, det};
 use super::modes::{condense, linear_modes, relax};
 use super::per_point::PerPoint;
@@ -412,6 +412,9 @@ where
     let own = history.per_point;
     let parameter = own.parameter::<T, N>(section);
     let stiff = if A > 0 { LEAST_PIVOT * own.law::<T, N>(0, section).moduli()[2][2] } else { 0.0 };
+    // On a tape the modes are known once forces are wanted.
+    let known = T::DERIVATIVES > 0 && history.tape.is_some() && out.is_some();
+    let matrices = tangent || (A > 0 && !known);
     let prepared = E::prepare(x, parameter, &own.sides(E::EDGE));
     let mut bar = Dilatation::<T, N, M>::new::<E, A>(x, q, alpha, &prepared, section);
     let mut about = AboutMean::<T, E::Op<T>, N, M>::new::<E, A>(x, q, &prepared, section);
@@ -516,7 +519,19 @@ where
         if let Some(out) = out.as_deref_mut() {
             s.op.add_force(&stress, drill, &mut out.force);
         }
-        if A == 0 && !tangent {
+        for m in 0..A {
+            let mode = &s.modes[m];
+            for i in 0..2 {
+                let force = &mut sums.force[2 * m + i];
+                for j in 0..2 {
+                    *force = mode[j].fma(stress[2 * i + j], *force);
+                }
+                if E::Op::<T>::DRILL {
+                    *force = mode_drill(mode, i).fma(drill, *force);
+                }
+            }
+        }
+        if !matrices {
             continue;
         }
         if let Some(bar) = &mut bar {
@@ -577,9 +592,6 @@ where
                 let r = 2 * m + i;
                 let mode = &s.modes[m];
                 sums.least[r] += least;
-                for j in 0..2 {
-                    sums.force[r] = mode[j].fma(stress[2 * i + j], sums.force[r]);
-                }
                 if let Some(by_mean) = &by_mean {
                     for c in 0..4 {
                         to_mean[r][c] = mode[0].fma(by_mean[2 * i][c], to_mean[r][c]);
@@ -596,9 +608,6 @@ where
                 } else {
                     mode_drill(mode, i) * gamma
                 };
-                if E::Op::<T>::DRILL {
-                    sums.force[r] = mode_drill(mode, i).fma(drill, sums.force[r]);
-                }
                 for n in 0..=m {
                     for j in 0..2 {
                         let k = &mut sums.stiffness[r][2 * n + j];
@@ -629,7 +638,7 @@ where
     }
     if let Some(bar) = &bar {
         finish_dilatation::<E, T, N, M, A>(
-            bar, x, q, alpha, &prepared, section, &mut sums, out, tangent,
+            bar, x, q, alpha, &prepared, section, &mut sums, out, tangent, matrices,
         );
     }
     sums
@@ -648,6 +657,7 @@ fn finish_dilatation<E, T: Real, const N: usize, const M: usize, const A: usize>
     sums: &mut Internal<T, N, M>,
     mut out: Option<&mut Local<T, N, M>>,
     tangent: bool,
+    matrices: bool,
 ) where
     E: Element<N, M, A>,
 {
@@ -658,7 +668,7 @@ fn finish_dilatation<E, T: Real, const N: usize, const M: usize, const A: usize>
         }
     }
     bar.finish_modes::<A>(sums);
-    if section.strain.is_linear() || (A == 0 && !tangent) {
+    if section.strain.is_linear() || !matrices {
         return;
     }
     for point in &section.points {
@@ -741,20 +751,22 @@ pub fn local_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
         out.failed = sums.failed;
         return;
     }
+    let taped = T::DERIVATIVES > 0 && history.tape.is_some();
     let mut alpha = [[T::zero(); 2]; A];
     let mut failed = T::none();
-    let taped = T::DERIVATIVES > 0 && history.tape.is_some();
     if taped || !(section.law.is_linear() && section.strain.is_linear()) {
         for m in 0..A {
             for i in 0..2 {
                 alpha[m][i] = T::load(&history.alpha[(2 * m + i) * history.stride..]);
             }
         }
-        failed = if taped {
-            linear_modes::<E, T, N, M, A>(x, q, section, history, &mut alpha)
-        } else {
-            relax::<E, T, N, M, A>(x, q, section, history, &mut alpha)
-        };
+    }
+    if taped {
+        taped_into::<E, T, N, M, A>(x, q, section, history, &mut alpha, out);
+        return;
+    }
+    if !(section.law.is_linear() && section.strain.is_linear()) {
+        failed = relax::<E, T, N, M, A>(x, q, section, history, &mut alpha);
     }
     let sums = pass::<E, T, N, M, A>(x, q, &alpha, section, history, Some(&mut *out), tangent);
     // What is left of the internal force is removed by its linear part.
@@ -777,6 +789,35 @@ pub fn local_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
     }
     if tangent {
         condense::<T, N, M, A>(&factor, &sums.coupling, &mut out.stiffness);
+    }
+    out.failed = T::or(failed, sums.failed);
+}
+
+/// [`local_into`] with the laws on a tape, about settled modes `alpha`.
+///
+/// Backwards their derivatives are the solution of their adjoint equations. Forwards the modes stay,
+/// and the tape takes the derivatives of their forces, of which these solutions are the weights.
+#[inline(always)]
+fn taped_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<T, N, 2>,
+    q: &Nodal<T, N, M>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+    alpha: &mut Nodal<T, A, 2>,
+    out: &mut Local<T, N, M>,
+) where
+    E: Element<N, M, A>,
+{
+    let mut failed = T::none();
+    if history.tape.as_ref().is_some_and(|tape| tape.way == Way::Backwards) {
+        failed = linear_modes::<E, T, N, M, A>(x, q, section, history, alpha);
+        for (k, v) in alpha.as_flattened().iter().enumerate() {
+            v.store(&mut history.alpha[k * history.stride..]);
+        }
+    }
+    let sums = pass::<E, T, N, M, A>(x, q, alpha, section, history, Some(&mut *out), false);
+    if let Some(tape) = history.tape.as_mut() {
+        tape.take_forces(&sums.force[..2 * A]);
     }
     out.failed = T::or(failed, sums.failed);
 }

@@ -5,7 +5,8 @@
 //! dofs that change by the weights of the forces, a kernel has the derivative of its strain along the
 //! weights, which the law takes back to its inputs; the stress carries that by the strain. Forces
 //! derive from the strain, so that theirs are then the gradient of the weighted sum of forces and new
-//! histories by the dofs, and of internal modes the solution of their own adjoint equations.
+//! histories by the dofs, and of internal modes the solution of their own adjoint equations. With these
+//! as weights of the forces of the modes, the modes stay where they are on the way forwards.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use crate::base::small::Mat;
@@ -53,6 +54,10 @@ pub struct LawTape {
     pub weights: Vec<f64>,
     /// Gradient by the old history, which the way backwards writes.
     pub gradient: Vec<f64>,
+    /// Weights of the forces of the internal modes on the way forwards.
+    pub modes: Vec<f64>,
+    /// Derivatives of the sum of these forces by their weights.
+    pub sum: [f64; WIDTH],
     /// Whether the tangents are the derivatives of the stress.
     pub exact: bool,
     old: Vec<f64>,
@@ -82,6 +87,20 @@ impl LawTape {
         self.points.iter_mut().for_each(|point| point.known = false);
         self.gradient.fill(0.0);
         self.exact = true;
+    }
+
+    /// Add forces of internal modes to their sum.
+    pub fn take_forces<T: Real>(&mut self, forces: &[T]) {
+        if self.way == Way::Backwards {
+            return;
+        }
+        let mut places = [0.0; 1 + WIDTH];
+        for (force, weight) in forces.iter().zip(&self.modes) {
+            force.store(&mut places);
+            for (sum, d) in self.sum.iter_mut().zip(&places[1..=T::DERIVATIVES]) {
+                *sum += weight * d;
+            }
+        }
     }
 
     /// Differentiate the law of a point.

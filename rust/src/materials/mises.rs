@@ -311,6 +311,30 @@ impl<F: Flow> J2<F> {
         (T::select(yields, dp, T::zero()), T::real(0.5).lt(open))
     }
 
+    /// [`J2::solve`]; where numbers carry derivatives, of plain numbers, and these follow by one step
+    /// of Newton's method about the solution.
+    #[inline(always)]
+    fn step<T: Real>(
+        &self,
+        y: &[T; 3],
+        start: &F::Start<T>,
+        old: &[[T; 3]; MAX_BACK],
+        excess: T,
+        yields: T::Mask,
+        state: &PointState<'_>,
+    ) -> (T, T::Mask) {
+        if T::DERIVATIVES == 0 {
+            return self.solve(y, start, old, excess, yields);
+        }
+        let plain = |v: &[T; 3]| v.map(|v| v.lane(0));
+        let begin = self.flow_stress.start(state, state.get(EQUIVALENT), self.first());
+        let all = old.each_ref().map(plain);
+        let (dp, open) = self.solve::<f64>(&plain(y), &begin, &all, excess.lane(0), true);
+        let at = self.trial(y, start, old, T::real(dp));
+        let failed = if open { T::zero().lt(T::one()) } else { T::none() };
+        (T::real(dp) - at.value / at.derivative, failed)
+    }
+
     /// Elastic tangent less the plastic part, symmetric.
     #[inline(always)]
     fn tangent<T: Real>(&self, at: &Trial<T>, yields: T::Mask) -> Mat<T, 3> {
@@ -394,7 +418,7 @@ impl<F: Flow> J2<F> {
         let yields = T::zero().lt(excess);
         let (sum, tangent, failed);
         if T::any(yields) {
-            let (dp, open) = self.solve(&y, &start, &old, excess, yields);
+            let (dp, open) = self.step(&y, &start, &old, excess, yields, state);
             failed = open;
             let at = self.trial(&y, &start, &old, dp);
             let mut done: T = state.get(WORK);

@@ -430,8 +430,16 @@ impl Problem {
     }
 
     /// Gradients of the weighted forces and new state of the elements at displacements `u` from
-    /// the committed state, which stays.
-    pub fn gradients(&self, u: &[f64], nlgeom: bool, weights: &Weights<'_>) -> Sums {
+    /// the committed state, which stays. The elements are evaluated there first.
+    pub fn gradients(
+        &mut self,
+        u: &[f64],
+        nlgeom: bool,
+        weights: &Weights<'_>,
+    ) -> Result<Sums, Failed> {
+        let kinematics = if nlgeom { Kinematics::Finite } else { Kinematics::Linear };
+        let [mut force, mut scale] = [0, 1].map(|_| vec![0.0; u.len()]);
+        self.assemble(u, kinematics, &mut force, &mut scale, &mut [])?;
         let clock = self.clock;
         let context = Context { nlgeom, clock, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
         let chunks: Vec<&dyn Chunk> = self.colors.iter().flatten().map(AsRef::as_ref).collect();
@@ -444,7 +452,8 @@ impl Problem {
         for (chunk, part) in chunks.iter().zip(&parts) {
             sums.add(*chunk, part, &self.dofs);
         }
-        sums
+        sums.failed.sort_unstable();
+        if sums.failed.is_empty() { Ok(sums) } else { Err(Failed(sums.failed)) }
     }
 
     /// Histories of the elements by block, `[n, members]`, committed or of the last evaluation.

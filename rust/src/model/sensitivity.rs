@@ -175,8 +175,9 @@ impl Stored {
     fn seed(&mut self, k: usize, variable: usize) {
         self.places[k * self.stride + 1 + variable] = 1.0;
     }
-    fn value(&self, k: usize) -> f64 {
-        self.places[k * self.stride]
+    /// First derivatives.
+    fn along(&self) -> impl Iterator<Item = f64> {
+        self.places.chunks_exact(self.stride).map(|number| number[1])
     }
 }
 
@@ -232,18 +233,14 @@ where
         }
     }
 
-    /// Values of an element, about the modes and the own memory of a `settled` evaluation if there
-    /// is one.
-    fn set(&self, inputs: &mut Inputs, e: usize, settled: Option<&Inputs>) {
+    /// Values of an element, about the modes and the own memory of the last evaluation.
+    fn set(&self, inputs: &mut Inputs, e: usize) {
         let at = |values: &[f64], k: usize| values[k * self.stride + e];
         let memory =
             if E::LINE { self.n_state() - E::MEMORY.min(self.n_state()) } else { usize::MAX };
-        inputs.old.set(|k| match settled {
-            Some(settled) if k >= memory => settled.new.value(k),
-            _ => at(&self.old, k),
-        });
+        inputs.old.set(|k| at(if k < memory { &self.old } else { &self.new }, k));
         inputs.new.set(|_| 0.0);
-        inputs.alpha.set(|k| settled.map_or_else(|| at(&self.alpha, k), |s| s.alpha.value(k)));
+        inputs.alpha.set(|k| at(&self.alpha, k));
         inputs.sides.set(|k| at(&self.sides, k));
         let uniform = self.shared.section.thickness;
         inputs
@@ -283,13 +280,15 @@ where
         answer
     }
 
-    /// Gradients of all elements of the chunk.
+    /// Gradients of all elements of the chunk about their last evaluation.
     pub(super) fn differentiate(&self, context: &Context<'_>, weights: &Weights<'_>) -> Gradients {
         let section = &self.shared.section;
         let (n_points, n_state) = (section.points.len(), self.n_state());
         let wanted = weights.wanted;
         let forward = self.inputs(wanted);
-        let backward = Self::TAPED && (wanted.displacements || wanted.state);
+        // The way forwards weighs the forces of internal modes by what comes backwards.
+        let backward =
+            Self::TAPED && (wanted.displacements || wanted.state || (A > 0 && !forward.is_empty()));
         let n = self.nodes.len();
         let mut out = Gradients::default();
         let state = weights.state.get(self.shared.block).map_or(&[][..], Vec::as_slice);
@@ -300,7 +299,6 @@ where
         out.thickness = sized(wanted.thickness, n_points * n);
         out.initial = sized(wanted.initial, 4 * n_points * n);
         let strained = !self.initial.is_empty();
-        let mut settled = self.numbers::<f64>(strained);
         let mut along = self.numbers::<Along>(strained);
         let mut inputs = self.numbers::<Number>(strained || wanted.initial);
         let mut tape = LawTape::new(section.n_histories(), section.law.n_state(), n_state);
@@ -309,11 +307,7 @@ where
             let mut failed = false;
             let own = state.get(self.elements[e] as usize * n_state..).unwrap_or(&[]);
             let own = &own[..n_state.min(own.len())];
-            if Self::TAPED {
-                self.set(&mut settled, e, None);
-                failed |= self.respond::<f64>(e, context, (&x0, &u0), &mut settled, None).failed;
-                tape.clear();
-            }
+            tape.clear();
             if backward {
                 tape.way = Way::Backwards;
                 tape.weights.clear();
@@ -326,7 +320,7 @@ where
                         u[a][i].d[0] = weights.force[start + i];
                     }
                 }
-                self.set(&mut along, e, Some(&settled));
+                self.set(&mut along, e);
                 let answer = self.respond(e, context, (&x, &u), &mut along, Some(&mut tape));
                 failed |= answer.failed;
                 if wanted.displacements {
@@ -338,12 +332,14 @@ where
                 if wanted.state {
                     out.state[n_state * e..][..n_state].copy_from_slice(&tape.gradient);
                 }
+                tape.modes.clear();
+                tape.modes.extend(along.alpha.along());
                 tape.way = Way::Forwards;
             }
             for group in forward.chunks(WIDTH) {
                 let mut x = x0.map(|p| p.map(Number::real));
                 let mut u = u0.map(|p| p.map(Number::real));
-                self.set(&mut inputs, e, Self::TAPED.then_some(&settled));
+                self.set(&mut inputs, e);
                 for (variable, &input) in group.iter().enumerate() {
                     match input {
                         Input::Position(k) => x[k / 2][k % 2].d[variable] = 1.0,
@@ -356,7 +352,10 @@ where
                 let taped = Self::TAPED.then_some(&mut tape);
                 let answer = self.respond(e, context, (&x, &u), &mut inputs, taped);
                 failed |= answer.failed;
-                let sum = self.weighted(e, context, weights, own, &answer.force, &inputs.new);
+                let mut sum = self.weighted(e, context, weights, own, &answer.force, &inputs.new);
+                for (s, d) in sum.iter_mut().zip(std::mem::take(&mut tape.sum)) {
+                    *s += d;
+                }
                 for (&input, &d) in group.iter().zip(&sum) {
                     match input {
                         Input::Position(k) => out.positions[2 * N * e + k] = d,

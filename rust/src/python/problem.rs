@@ -507,7 +507,7 @@ impl PyProblem {
     /// ``histories``; thickness and initial are lists by block of (n, p) and (n, p, 4); exact is
     /// whether the tangents of all laws are the derivatives of their stress.
     fn differentiate<'py>(
-        &self,
+        &mut self,
         py: Python<'py>,
         u: PyReadonlyArray1<'py, f64>,
         nlgeom: bool,
@@ -530,10 +530,7 @@ impl PyProblem {
             return Err(value_error("weights of the histories do not fit the problem"));
         }
         let weights = Weights { force, state: &state, wanted };
-        let all = py.detach(|| self.inner.gradients(u, nlgeom, &weights));
-        if !all.failed.is_empty() {
-            return Err(failed(Failed(all.failed)));
-        }
+        let all = py.detach(|| self.inner.gradients(u, nlgeom, &weights)).map_err(failed)?;
         let d = PyDict::new(py);
         let nodes = self.inner.x.len();
         d.set_item("exact", all.exact)?;

@@ -377,7 +377,10 @@ def _solve(
     first, previous = z, np.inf
     size = float(np.abs(z).max(initial=0.0))
     for _ in range(CORRECTIONS):
-        force = np.stack([_missing(point, tangent, column) for column in z.T], axis=1)
+        parts = [_missing(point, tangent, column) for column in z.T]
+        if all(exact for _, exact in parts):
+            return z
+        force = np.stack([part for part, _ in parts], axis=1)
         force[system.conditions.constrained] = 0.0
         new = first + system.solve_with_last_factor(force)
         change = float(np.abs(new - z).max(initial=0.0))
@@ -403,13 +406,20 @@ def _of_elements(point: Point) -> Floats:
     return values
 
 
-def _missing(point: Point, tangent: Floats, z: Floats) -> Floats:
-    """Product of the tangent of the elements with z, less that of their derivative."""
+def _missing(point: Point, tangent: Floats, z: Floats) -> tuple[Floats, bool]:
+    """Product of the tangent of the elements with z, less that of their derivative.
+
+    Returns
+    -------
+    difference : ndarray, shape (n_dofs,)
+    exact : bool
+        Whether the tangents of all laws are derivatives, so that it is rounding.
+    """
     system = point.system
     here, weights = system.in_space(point.u), np.ascontiguousarray(system.in_space(z))
     found = system.core.differentiate(here, system.nlgeom, weights, [], ["displacements"])
     product = system.product(tangent, np.ascontiguousarray(z))
-    return product - system.at_nodes(found["displacements"])
+    return product - system.at_nodes(found["displacements"]), found["exact"]
 
 
 def _at_fixed_control(

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 STENCIL = ((1, 2.0 / 3.0), (-1, -2.0 / 3.0), (2, -1.0 / 12.0), (-2, 1.0 / 12.0))
 #: First step, relative to the size of a variable.
 STEP = 1e-3
+#: First step times the number of variables of state. A bent strip of 400 thousand of them has an
+#: error of 8e-7 by a step of 1e-4, and of 1e-10 by steps of 1e-5 and 1e-6.
+STATE_STEP = 4.0
 #: Relative difference of the results of second and fourth order above which the step shrinks: the
 #: error of the fourth order is about its square.
 ROUGH = 1e-5
@@ -32,7 +35,7 @@ REDUCTIONS = 4
 
 
 def derivative(
-    function: Callable[[float], tuple[Floats, Floats]], size: float
+    function: Callable[[float], tuple[Floats, Floats]], size: float, first: float = STEP
 ) -> tuple[Floats, Floats]:
     """Derivative of a function of one variable at zero.
 
@@ -43,6 +46,8 @@ def derivative(
         times the machine precision are their rounding errors.
     size : float
         Size of the variable, over which the function is smooth.
+    first : float
+        First step, relative to the size.
 
     Returns
     -------
@@ -56,11 +61,11 @@ def derivative(
     Of several steps that with the least difference counts. Kinks beside the point let it rise from
     one step to the next until a step stays between them.
     """
-    slope, rough = _difference(function, STEP * size)
+    slope, rough = _difference(function, first * size)
     for reduction in range(1, REDUCTIONS + 1):
         if rough.max(initial=0.0) <= ROUGH:
             break
-        other, its = _difference(function, STEP * size * 0.1**reduction)
+        other, its = _difference(function, first * size * 0.1**reduction)
         if its.max() < rough.max():
             slope, rough = other, its
     return slope, rough
@@ -84,4 +89,17 @@ def all_derivatives(function: Callable[[float], Floats], step: float) -> Floats:
     return np.asarray(sum(weight * function(k * step) for k, weight in STENCIL) / step)
 
 
-__all__ = ["all_derivatives", "derivative"]
+def step_between_kinks(n_state: int) -> float:
+    """First relative step for laws with so many variables of state.
+
+    The step must not reach the next point that begins to flow, and the more points there are, the
+    nearer it is.
+
+    Returns
+    -------
+    float
+    """
+    return min(STEP, STATE_STEP / max(n_state, 1))
+
+
+__all__ = ["all_derivatives", "derivative", "step_between_kinks"]

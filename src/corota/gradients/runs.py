@@ -12,7 +12,7 @@ import numpy as np
 from corota.analysis.run import keep_nlgeom, solve
 from corota.errors import InputError, UnsupportedError
 from corota.gradients.adjoint import adjoints, control_row
-from corota.gradients.differences import derivative
+from corota.gradients.differences import derivative, step_between_kinks
 from corota.gradients.measures import Measure, SpecialMeasure, combine, leaves
 from corota.gradients.parameters import Field, Parameter
 from corota.gradients.sides import one_sided as limit
@@ -215,7 +215,8 @@ class Run:
         self, vary: Callable[[float], tuple[Model, Sequence[Step]]], size: float, name: str
     ) -> Floats:
         """Derivatives of all measures by one number that changes model and steps."""
-        slope, rough = derivative(lambda change: self._varied(*vary(change)), size)
+        first = step_between_kinks(sum(len(h) for h in self.increments[0].histories))
+        slope, rough = derivative(lambda change: self._varied(*vary(change)), size, first)
         count = len(self.leaves)
         for k, leaf in enumerate(self.leaves):
             if abs(slope[count + k]) * size > SYMMETRY * self.sizes[count + k]:
