@@ -10,8 +10,7 @@ import pytest
 
 import corota as ct
 from corota.io.tables.csv_history import Histories
-
-SCHEMES = ["newmark", "hht", "generalized_alpha", "energy_momentum"]
+from support.particles import IMPLICIT as SCHEMES
 
 
 def strip(rho: float = 1.0) -> ct.Model:

@@ -18,9 +18,9 @@ import pytest
 
 import corota as ct
 from support.models import cell
+from support.particles import IMPLICIT as SCHEMES
 from tests.support.lines import chain
 
-SCHEMES = ["newmark", "hht", "generalized_alpha", "energy_momentum"]
 ELEMENTS = ["Q4I", "Q8", "T6", "Q4D", "OPT", "BEAM"]
 OTHERS = ["T3", "Q4", "Q4S", "Q4R", "Q8R", "Q9", "Q4DI"]
 EXTRAS = ["plain", "contact", "point mass", "damping"]

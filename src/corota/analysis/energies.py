@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from corota.model.schemes import SCHEMES
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -194,7 +196,7 @@ class Energies:
     @property
     def made_by_contact(self) -> bool:
         """Whether impacts have created more energy than rounding and increments explain."""
-        implicit = self.scheme in ("newmark", "hht", "generalized_alpha")
+        implicit = self.scheme in SCHEMES
         return implicit and self.system.opens and self.error > LARGE_ERROR
 
     def remark(self) -> str:
@@ -209,7 +211,7 @@ class Energies:
         impacts = self.system.opens
         if self.scheme == "energy_momentum" or (self.scheme == "newmark" and not impacts):
             return text + "use smaller increments"
-        if self.scheme in ("newmark", "hht", "generalized_alpha"):
+        if self.scheme in SCHEMES:
             if impacts and self.error > 0.0:
                 return text + (
                     f"{self.scheme} does not conserve energy where contact opens and closes; use "

@@ -53,6 +53,16 @@ def hht(alpha: float = -0.05, rho: float = 1.0) -> Scheme:
     return Scheme(0.0, -alpha, 0.25 * (1.0 - alpha) ** 2, 0.5 - alpha, "hht")
 
 
+def bossak(alpha: float = -0.05, rho: float = 1.0) -> Scheme:
+    """Wood, Bossak & Zienkiewicz (1981), WBZ-alpha; `alpha` from -1 (most dissipation) to 0.
+
+    The spectral radius at infinite frequency is ``(1 + alpha) / (1 - alpha)``.
+    """
+    if not -1.0 <= alpha <= 0.0:
+        raise InputError(f"alpha of Bossak's scheme must lie in [-1, 0], not {alpha}")
+    return Scheme(alpha, 0.0, 0.25 * (1.0 - alpha) ** 2, 0.5 - alpha, "bossak")
+
+
 def generalized_alpha(alpha: float = 0.0, rho: float = 0.8) -> Scheme:
     """Chung & Hulbert (1993) by the spectral radius at infinite frequency, 0 to 1."""
     if not 0.0 <= rho <= 1.0:
@@ -65,6 +75,7 @@ def generalized_alpha(alpha: float = 0.0, rho: float = 0.8) -> Scheme:
 SCHEMES: dict[str, Callable[[float, float], Scheme]] = {
     "hht": hht,
     "newmark": newmark,
+    "bossak": bossak,
     "generalized_alpha": generalized_alpha,
 }
 

@@ -473,9 +473,10 @@ class Dynamic(Step):
     ----------
     increments : int, optional
         Fixed increments of ``period / increments``.
-    scheme : {"hht", "newmark", "generalized_alpha", "energy_momentum", "central_difference"}
+    scheme : str
+        One of :func:`corota.model.schemes.names`.
     alpha : float
-        Of the HHT scheme, -1/3 to 0.
+        Of the HHT scheme, -1/3 to 0, and of Bossak's, -1 to 0.
     rho_inf : float
         Of the generalized-alpha scheme, 0 to 1.
     mass : {"consistent", "constant", "lumped"}
