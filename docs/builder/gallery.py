@@ -49,6 +49,10 @@ ENTRIES = {
     "cells/holes": Entry(
         "Periodic cells", "Onset by one cell over that by the path of 2 x 2 cells: 1.00000000."
     ),
+    "cells/squares": Entry(
+        "Periodic cells",
+        "Closing strain by hand 0.410985; stress just after it over that by hand: 1.0000.",
+    ),
     "contact/bistable_beam": Entry(
         "Buckling and snap-through",
         "The probe's force vanishes after 4/3 of the height within 2 % (Qiu, Lang, Slocum).",

@@ -1,4 +1,4 @@
-"""Periodic cells of the examples: pattern of holes, chiral lattice."""
+"""Periodic cells of the examples: pattern of holes, chiral lattice, squares that meet."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -51,3 +51,16 @@ def test_chiral_lattice(load, share: float, most: float) -> None:
     assert found["E2"] == pytest.approx(found["E1"], rel=1e-6)
     assert found["G12"] == pytest.approx(0.5 * found["E1"] / (1.0 + found["nu12"]), rel=1e-6)
     assert -1.0 < found["nu12"] < most
+
+
+def test_rotating_squares_close_across_the_border(load) -> None:
+    """No stress up to the closing strain, then that of rigid squares."""
+    example = load("cells/squares.py")
+    one = example.cell(2)
+    before = one.stress(example.pressed(one, (1.0 - 1e-9) * example.STRAIN))
+    np.testing.assert_allclose(before, 0.0, atol=1e-9)
+    for share in (1.0 + 1e-4, 1.03):
+        found = one.stress(example.pressed(one, share * example.STRAIN))
+        expected = example.stress(share * example.STRAIN)
+        np.testing.assert_allclose(found.diagonal(), expected, rtol=3e-4)
+        assert abs(found[0, 1]) < 1e-3 * abs(expected)

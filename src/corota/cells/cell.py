@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 
 from corota.analysis.linear.factor import Factor
 from corota.analysis.terms.linearized import Linearized
+from corota.cells.images import add_images, contact_nodes
 from corota.cells.pairs import SAME, pair_nodes
 from corota.cells.states import point_of
 from corota.errors import InputError, UnsupportedError, number
@@ -50,9 +51,9 @@ class PeriodicCell:
     Parameters
     ----------
     model : Model
-        Of one cell, without supports: mesh, sections, contact within the cell, loads such as a
-        pressure in a hole. It is copied. Opposite sides have the same nodes; the shape of the
-        cell is any whose copies fill the body.
+        Of one cell, without supports: mesh, sections, contact, loads such as a pressure in a hole.
+        It is copied. Surfaces meet within the cell and across its border. Opposite sides have the
+        same nodes; the shape of the cell is any whose copies fill the body.
     vectors : array_like, shape (2, 2), optional
         Vectors of the lattice, one a row [length]; by default the sides of the rectangle around
         the mesh.
@@ -67,6 +68,9 @@ class PeriodicCell:
         by :meth:`drive`.
     base : Model
         The cell alone.
+    around : Model
+        The cell with images of its contact surfaces in the cells around it, see
+        :mod:`corota.cells.images`.
     reference : tuple of int
         Nodes whose displacements over `size` are the columns of the mean displacement gradient.
     size : float
@@ -113,22 +117,24 @@ class PeriodicCell:
         self.depth = _depth(self.base) if depth is None else number(depth, "the depth")
         if not self.depth > 0.0:
             raise InputError(f"the depth must be > 0, not {self.depth}")
-        self.first, self.shift = pair_nodes(self.base.mesh, self.vectors)
-        self.model = self.base.copy()
+        classes = pair_nodes(self.base.mesh, self.vectors, contact_nodes(self.base))
+        self.around, self.first, self.shift, repeated = add_images(
+            self.base, self.vectors, *classes
+        )
+        self.model = self.around.copy()
         corner = points.min(axis=0)
         self.reference = (
             add_node(self.model.mesh, corner[0] + self.size, corner[1], "gradient x"),
             add_node(self.model.mesh, corner[0], corner[1] + self.size, "gradient y"),
         )
-        self.model.constraints += self._equations()
+        self.model.constraints += self._equations(_nodes_with_rotation(self.base)[repeated])
         paired = np.flatnonzero(self.shift.any(axis=1))
         self.model.fix([int(self.first[paired[0]])])
 
-    def _equations(self) -> list[Equation]:
+    def _equations(self, rotating: NDArray[np.bool_]) -> list[Equation]:
         found = []
         distances = self.shift @ self.vectors / self.size
-        rotating = _nodes_with_rotation(self.base)
-        for node in np.flatnonzero(self.shift.any(axis=1)).tolist():
+        for node in np.flatnonzero(self.first != np.arange(len(self.first))).tolist():
             first = int(self.first[node])
             for dof in range(2):
                 terms = [(node, dof, 1.0), (first, dof, -1.0)]
@@ -285,7 +291,8 @@ class PeriodicCell:
             *(move(base.mesh, shift=(float(s[0]), float(s[1]))) for s in shifts),
             tolerance=SAME * self.size,
         )
-        if mesh.n_nodes != _count_nodes(self.first, self.shift, n, m):
+        count = base.mesh.n_nodes
+        if mesh.n_nodes != _count_nodes(self.first[:count], self.shift[:count], n, m):
             raise UnsupportedError("repeat() would merge nodes of a cell that are at one place")
         nodes = self.nodes_of_copies(mesh.points, shifts)
         model = Model(mesh, base.name)

@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
+from corota.analysis.terms.contact.contact import ContactTerm
+from corota.analysis.terms.contact.gaps import COVERED, OPEN, SLIPPING
+from corota.analysis.terms.linearized import Linearized
 from corota.cells.states import point_of, settle, state_at
 from corota.cells.waves import UNIFORM, Waves
 from corota.display import Brief
-from corota.errors import InputError, UnsupportedError
+from corota.errors import ConvergenceError, InputError, UnsupportedError
 from corota.gradients.trajectory import increments_of
 
 if TYPE_CHECKING:
@@ -23,6 +26,15 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+#: Share of the largest pressure, and of the size of the cell, by which contact may be wrong.
+OVER = 1e-9
+#: Where the load of the onset is not between two equilibria with the same contact.
+CHANGES = (
+    "surfaces meet, part or slip in the increment in which a wave loses its stiffness: its load is "
+    "found with smaller increments"
+)
+#: Shares of an increment by which the search for a stable state goes back from its end.
+BACK = (0.125, 0.25, 0.5, 1.0)
 #: Size of the interval of the load in which the onset lies, over that of an increment.
 LOCATED = 1e-13
 
@@ -71,10 +83,10 @@ def find_onset(cell: Cell, results: Results, waves: int | ArrayLike) -> Onset:
     InputError
         If no wave loses its stiffness up to the end of the run.
     UnsupportedError
-        With contact, whose states change between increments, or several steps.
+        If surfaces meet, part or slip in the increment of the onset, or with several steps.
     """
-    if cell.base.contacts or len(results.steps) > 1:
-        raise UnsupportedError("onset is for one static step without contact")
+    if len(results.steps) > 1:
+        raise UnsupportedError("onset is for one static step")
     vectors = _grid(waves) if isinstance(waves, int) else np.atleast_2d(np.asarray(waves, float))
     increments = increments_of(results)
     before = point_of(cell.model, None, -1)
@@ -110,13 +122,47 @@ def _first(cell: Cell, before: State, after: State, lost: list[Floats]) -> Onset
         def stiffness(time: float, k: Floats = k, mode: Floats | None = mode) -> float:
             return Waves(cell, at(time, mode)).least_stiffness(k)
 
-        if stiffness(begin) <= 0.0 or (stiffness(last) >= 0.0 and k is not lost[0]):
+        if k is not lost[0] and stiffness(last) >= 0.0:
             continue
-        last = float(brentq(stiffness, begin, last, xtol=LOCATED * (after.time - begin)))
+        # Beside an equilibrium, where contact is as there, and not further back than necessary.
+        try:
+            back = (last - share * (last - begin) for share in BACK)
+            stable = next((time for time in back if stiffness(time) > 0.0), None)
+        except ConvergenceError:
+            stable = None
+        if stable is None:
+            raise UnsupportedError(CHANGES)
+        last = float(brentq(stiffness, stable, last, xtol=LOCATED * (after.time - begin)))
         wave, state = k, at(last, mode)
+    if not _keeps_contact(state):
+        raise UnsupportedError(CHANGES)
     shape = Waves(cell, state).softest(wave)
     moved = state.system.by_node(state.u)[list(cell.reference), :2]
     return Onset(last, wave, shape, moved.T / cell.size)
+
+
+def _keeps_contact(state: State) -> bool:
+    """Whether the states of contact are those of an equilibrium there."""
+    pressures, states = state.contact
+    if pressures is None:
+        return True
+    term = state.system.term(ContactTerm)
+    lin = Linearized(state.system, state.u, pressures, states, time=state.time)
+    most = OVER * max(float(np.abs(pressures).max(initial=0.0)), 1e-300)
+    contact = lin.at.contact_state
+    each = zip(term.pairs, contact.terms, term.parts(pressures), states, strict=True)
+    for pair, terms, (p, q), own in each:
+        if pair.tied:
+            continue
+        seen = terms.area > COVERED * pair.full
+        through = seen & (terms.gap < -OVER * state.system.length * pair.full)
+        bad = (own == OPEN) & through
+        bad |= (own != OPEN) & (p < -most)
+        if pair.friction:
+            bad |= (own == SLIPPING) | (np.abs(q) > pair.friction * p + most)
+        if bad.any():
+            return False
+    return True
 
 
 def _mode(cell: Cell, state: State, wave: Floats) -> Floats | None:

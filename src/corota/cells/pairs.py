@@ -20,11 +20,12 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
+NOWHERE: Ints = np.zeros(0, np.int64)
 #: Distance of nodes that are one, over the vectors of the lattice.
 SAME = 1e-6
 
 
-def pair_nodes(mesh: Mesh, vectors: Floats) -> tuple[Ints, Ints]:
+def pair_nodes(mesh: Mesh, vectors: Floats, free: Ints = NOWHERE) -> tuple[Ints, Ints]:
     """Find the nodes that differ by vectors of the lattice.
 
     Parameters
@@ -32,6 +33,9 @@ def pair_nodes(mesh: Mesh, vectors: Floats) -> tuple[Ints, Ints]:
     mesh : Mesh
     vectors : ndarray, shape (2, 2)
         Vectors of the lattice, one a row.
+    free : ndarray of int, optional
+        Nodes that need no partner on the border, with those on the boundary up to the next ones
+        that have a partner: contact surfaces.
 
     Returns
     -------
@@ -69,7 +73,7 @@ def pair_nodes(mesh: Mesh, vectors: Floats) -> tuple[Ints, Ints]:
     alone = ~moved[label]
     first[alone] = np.flatnonzero(alone)
     _refuse_doubles(mesh, place, label)
-    _refuse_unpaired(mesh, place, first, shift)
+    _refuse_unpaired(mesh, place, first, shift, free)
     return first, shift
 
 
@@ -102,7 +106,7 @@ def _refuse_doubles(mesh: Mesh, place: Floats, label: Ints) -> None:
         )
 
 
-def _refuse_unpaired(mesh: Mesh, place: Floats, first: Ints, shift: Ints) -> None:
+def _refuse_unpaired(mesh: Mesh, place: Floats, first: Ints, shift: Ints, free: Ints) -> None:
     edges = mesh.edge_nodes(mesh.boundary_edges())
     for axis in range(2):
         if not shift[:, axis].any():
@@ -117,13 +121,24 @@ def _refuse_unpaired(mesh: Mesh, place: Floats, first: Ints, shift: Ints) -> Non
         # Edges along the border are within the body; struts there need no partner.
         outer = [n for n in edges if any(side[n].all() for side in sides)]
         both = np.intersect1d(first[sides[0]], first[sides[1]])
-        bad = np.unique([node for n in outer for node in n[~np.isin(first[n], both)]])
+        bare = [n[~np.isin(first[n], both)] for n in outer]
+        bad = np.setdiff1d(np.concatenate([free[:0], *bare]), _reached(bare, free))
         if len(bad):
             x, y = mesh.points[int(bad[0])]
             raise InputError(
                 f"node {mesh.node_labels[int(bad[0])]} at ({x:.6g}, {y:.6g}) has no partner on the "
                 f"opposite side of the cell ({len(bad)} nodes in all): mesh opposite sides alike"
             )
+
+
+def _reached(edges: list[Ints], free: Ints) -> Ints:
+    """Nodes that edges connect with given ones, with these."""
+    count = -1
+    while count != len(free):
+        count = len(free)
+        more = [n for n in edges if np.isin(n, free).any()]
+        free = np.unique(np.concatenate([free, *more]))
+    return free
 
 
 __all__ = ["pair_nodes"]

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
+import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import make_solver
+from corota.analysis.terms.linearized import Linearized
 from corota.errors import ConvergenceError, InputError, UnsupportedError
-from corota.gradients.critical import Tangent
 from corota.gradients.trajectory import Trajectory, increments_of
 from corota.model.steps import Static
 
@@ -35,6 +36,7 @@ class Cell(Protocol):
     """What waves need of a :class:`corota.cells.PeriodicCell`."""
 
     base: Model
+    around: Model
     model: Model
     reference: tuple[int, int]
     size: float
@@ -93,12 +95,14 @@ def state_at(model: Model, results: Results, increments: list[Increment], number
     """State of an increment of a run."""
     if not np.array_equal(results.model.mesh.points, model.mesh.points):
         raise InputError("the results are those of another model than that of the cell")
-    trajectory = Trajectory(model, results.steps)
+    trajectory = Trajectory(model, results.steps, kinks=True)
     if trajectory.remembers:
         raise UnsupportedError("tangents and waves of cells do not include materials with history")
     increment = increments[number]
-    ends = {i.step: i for i in increments if i.step < increment.step}
-    *_, point = trajectory.walk([*ends.values(), increment])
+    before = increments[:number]
+    if not trajectory.slides:  # slips go from one increment to the next
+        before = list({i.step: i for i in before if i.step < increment.step}.values())
+    *_, point = trajectory.walk([*before, increment])
     trajectory.require_equilibrium(point)
     surfaces = increment.surfaces
     contact = (None, None) if surfaces is None else (surfaces.multipliers, surfaces.states)
@@ -108,6 +112,8 @@ def state_at(model: Model, results: Results, increments: list[Increment], number
 
 def settle(state: State, u: Floats, time: float, beside: Floats | None = None) -> State:
     """Equilibrium at another step time, from a displacement nearby.
+
+    What is closed stays closed and sticks, if it has friction; what is open stays open.
 
     Parameters
     ----------
@@ -123,18 +129,23 @@ def settle(state: State, u: Floats, time: float, beside: Floats | None = None) -
     """
     system = state.system
     u = system.conditions.supports.at(time, u)
+    pressures, states = state.contact
     for _ in range(NEWTON):
         system.constraints.complete(u)
-        tangent = Tangent(system, u, time)
-        if beside is None:
-            found = splu(tangent.matrix).solve(-tangent.residual)
-        else:
-            border = tangent.restrict(beside)
-            found = tangent.bordered(border, border).solve(np.append(-tangent.residual, 0.0))[:-1]
-        change = tangent.expand(found)
+        lin = Linearized(system, u, pressures, states, time=time)
+        matrix = lin.sub(lin.stiffness)
+        rhs = np.concatenate([-lin.reaction[lin.free], lin.residuals])[lin.active]
+        if beside is not None:
+            border = sp.csc_array(lin.restrict(beside)[lin.active][:, None])
+            matrix = sp.block_array([[matrix, border], [border.T, None]], format="csc")
+            rhs = np.append(rhs, 0.0)
+        z = lin.from_active(splu(matrix).solve(rhs)[: len(lin.active)])
+        change = lin.expand(z)
         u = u + change
+        if pressures is not None:
+            pressures = pressures + z[lin.nf :]
         if np.abs(change).max() <= SETTLED * np.abs(u).max():
-            return replace(state, u=u, time=time)
+            return replace(state, u=u, time=time, contact=(pressures, states))
     raise ConvergenceError(f"no equilibrium of the cell at the step time {time:.6g}")
 
 

@@ -40,6 +40,8 @@ DENSE = 600
 SHIFT = 1e-9
 #: Distance of a wave vector from one of the reciprocal lattice that is none.
 UNIFORM = 1e-12
+#: Independent share of a constraint of closed surfaces below which it follows from others.
+DEPENDENT = 1e-9
 
 
 class Waves:
@@ -64,40 +66,41 @@ class Waves:
         if any(not cell.drives(load) for load in state.step.loads):
             raise UnsupportedError("loads in a cell are those of its model, not of a step")
         self.cell, self.mass_kind = cell, mass
-        self.system = system = System(cell.base, make_solver("multifrontal"))
+        self.system = system = System(cell.around, make_solver("multifrontal"))
         step = Static(nlgeom=state.step.nlgeom, period=state.step.period)
         system.begin(step, 0.0, np.zeros(system.n_dofs), None)
-        by_node = state.system.by_node(state.u)[: cell.base.mesh.n_nodes]
+        by_node = state.system.by_node(state.u)[: cell.around.mesh.n_nodes]
         self.u = system.from_nodes(by_node)
         system.constraints.complete(self.u)
         self.lin = Linearized(system, self.u, *state.contact, time=state.time)
         if not self.lin.symmetric:
             raise UnsupportedError("waves about states with follower loads without a potential")
+        self._stiffness, self._prevented = self.lin.of_dofs()
         self._number()
 
     def _number(self) -> None:
         """Unknowns of a period, and the multiples of the lattice to the others."""
         lin, cell, system = self.lin, self.cell, self.system
+        own = np.arange(lin.nf)
         position = np.full(system.n_dofs, -1)
-        position[lin.free] = np.arange(lin.nf)
+        position[lin.free] = own
         node, component = system.node_of_dof[lin.free], system.component[lin.free]
         first = cell.first[node]
         alike = component < system.per_node[first]
         target = np.where(alike, position[system.start[first] + np.where(alike, component, 0)], -2)
         if (target == -1).any():
-            bad = cell.base.mesh.node_labels[node[np.flatnonzero(target == -1)[0]]]
+            bad = cell.around.mesh.node_labels[node[np.flatnonzero(target == -1)[0]]]
             raise UnsupportedError(
                 f"a constraint of the cell determines node {bad} or its partner on the border"
             )
-        own = np.arange(lin.n)
-        self._target = own.copy()
-        self._target[: lin.nf] = np.where(alike, target, own[: lin.nf])
-        self._shift = np.zeros((lin.n, 2))
-        self._shift[: lin.nf] = cell.shift[node] * alike[:, None]
-        _, self._column, count = np.unique(self._target, return_inverse=True, return_counts=True)
+        target = np.where(alike, target, own)
+        self._shift = cell.shift[node] * alike[:, None]
+        _, self._column, count = np.unique(target, return_inverse=True, return_counts=True)
         self._size = len(count)
-        self._border = count[self._column] > 1
-        paired = np.flatnonzero(self._border & (self._target == own))
+        shared = count[self._column] > 1
+        paired = np.flatnonzero(shared & (target == own))
+        #: Unknowns that are not condensed: of the border, and those that closed surfaces hold.
+        self._border = shared | (np.diff(self._prevented.tocsr().indptr) > 0)
         start = system.start[node[paired[0]]]
         #: Unknowns whose support excludes uniform motion.
         self._uniform = self._column[position[[start, start + 1]]]
@@ -110,8 +113,8 @@ class Waves:
                 f"a wave vector has two shares of the reciprocal lattice, not {wave!r}"
             )
         phase = np.exp(2j * math.pi * (self._shift @ k))
-        shape = (self.lin.n, self._size)
-        whole = sp.csr_array((phase, (np.arange(self.lin.n), self._column)), shape=shape)
+        shape = (self.lin.nf, self._size)
+        whole = sp.csr_array((phase, (np.arange(self.lin.nf), self._column)), shape=shape)
         free = np.ones(self._size, bool)
         if np.abs(k - np.rint(k)).max() <= UNIFORM:
             free[self._uniform] = False
@@ -122,23 +125,30 @@ class Waves:
         """Stiffness of the border, the factors inside, and the coupling of both."""
         lin, border = self.lin, np.flatnonzero(self._border)
         inside = np.flatnonzero(~self._border)
-        k = lin.stiffness.tocsc()
+        k = self._stiffness
         whole: Floats = k[border][:, border].toarray()
         if not len(inside):
             return whole, None, None
-        factor = Factor(
-            k[inside][:, inside].tocsc(), True, lin.node[inside], lin.multiplier[inside], 1
-        )
+        matrix = k[inside][:, inside].tocsc()
+        factor = Factor(matrix, True, lin.node[inside], lin.multiplier[inside], 1)
         side = k[inside][:, border].tocsc()
         whole = whole - side.T @ factor.solve(side.toarray())
         return 0.5 * (whole + whole.T), factor, side
 
     def _on_border(self, wave: ArrayLike) -> tuple[Complex, Any]:
-        """Stiffness of the border at a wave vector, and its unknowns by those of a period."""
+        """Stiffness of the border at a wave vector, and its unknowns by those of a period.
+
+        Closed surfaces leave the motions that keep their gaps.
+        """
         whole, free = self._transform(wave)
         at = np.zeros(self._size, bool)
         at[self._column[self._border]] = True
-        part = whole[np.flatnonzero(self._border)][:, np.flatnonzero(at & free)]
+        border = np.flatnonzero(self._border)
+        part = whole[border][:, np.flatnonzero(at & free)]
+        if self._prevented.shape[1]:
+            gaps = (self._prevented[border].T @ part).toarray()
+            size = np.linalg.norm(gaps, axis=1, keepdims=True)
+            part = part @ scipy.linalg.null_space(gaps / np.where(size, size, 1.0), DEPENDENT)
         stiffness = part.conj().T @ (part.T @ self._condensed[0].T).T
         return np.asarray(stiffness), part
 
@@ -160,7 +170,7 @@ class Waves:
         """
         stiffness, part = self._on_border(wave)
         vector = part @ np.linalg.eigh(stiffness)[1][:, 0]
-        z = np.zeros(self.lin.n, np.complex128)
+        z = np.zeros(self.lin.nf, np.complex128)
         z[self._border] = vector
         _, factor, side = self._condensed
         if factor is not None:
@@ -168,6 +178,7 @@ class Waves:
             z[~self._border] = -(factor.solve(right.real) + 1j * factor.solve(right.imag))
         u = self.lin.expand(z)
         shape = self.system.by_node(u.real) + 1j * self.system.by_node(u.imag)
+        shape = shape[: self.cell.base.mesh.n_nodes]
         size = np.abs(shape[:, :2])
         out: Complex = shape / shape[:, :2].ravel()[int(np.argmax(size))]
         return out
@@ -175,7 +186,7 @@ class Waves:
     @cached_property
     def _mass(self) -> Any:
         values = Inertia(self.system, self.mass_kind).tangent(self.u)
-        return self.lin.padded(self.lin.reduce(values))
+        return self.lin.reduce(values)
 
     def frequencies(self, waves: ArrayLike, count: int = 6) -> Floats:
         """Dispersion: lowest frequencies at wave vectors, shape (n, count) [1/time].
@@ -190,13 +201,13 @@ class Waves:
         ndarray
             Negative where a wave grows: then its rate of growth over 2 pi.
         """
-        if self.lin.n_multipliers:
-            raise UnsupportedError("frequencies of waves do not include contact and ties")
+        if self._prevented.shape[1]:
+            raise UnsupportedError("frequencies of waves do not include closed surfaces and ties")
         return np.array([self._lowest(k, count) for k in np.atleast_2d(np.asarray(waves, float))])
 
     def _lowest(self, wave: Floats, count: int) -> Floats:
         part = self._transform(wave)[0].tocsc()
-        k, m = (part.conj().T @ x @ part for x in (self.lin.stiffness, self._mass))
+        k, m = (part.conj().T @ x @ part for x in (self._stiffness, self._mass))
         if not 1 <= count <= self._size:
             raise InputError(f"the cell has {self._size} waves of a vector, not {count}")
         if self._size <= DENSE or count >= self._size - 1:

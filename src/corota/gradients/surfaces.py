@@ -108,7 +108,8 @@ def find(system: System, u: Floats, time: float, at: Evaluation, kinks: bool = F
     rows, columns, values, states, closed = [], [], [], [], []
     for pair, terms in zip(term.pairs, state.terms, strict=True):
         seen = terms.area > COVERED * pair.full
-        touches = seen & (np.abs(terms.gap) <= TOUCHES * system.length * pair.full)
+        # A node on the joint of two edges may be a little inside of one.
+        touches = seen & (terms.gap <= TOUCHES * system.length * pair.full)
         if pair.tied:
             touches = seen
         states.append(np.where(touches, CLOSED, 0).astype(np.int8))

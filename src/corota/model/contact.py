@@ -316,6 +316,9 @@ class ContactPair(Brief):
         Other coefficients, each from the begin of a step (its number, from 1) on.
     friction_ramps : bool
         Whether these grow from the coefficient before over a static step whose loads grow.
+    images : ndarray of int, shape (k, n_nodes), optional
+        The slave meets k images of the master in its place: for each node of the master the node
+        that repeats it, which constraints of the model move. See :mod:`corota.cells.images`.
     """
 
     slave: str | Ints
@@ -338,6 +341,7 @@ class ContactPair(Brief):
     steps: tuple[int, ...] | None = field(default=None, kw_only=True)
     friction_steps: Mapping[int, float] = field(default_factory=dict, kw_only=True)
     friction_ramps: bool = field(default=True, kw_only=True)
+    images: Ints | None = field(default=None, kw_only=True, repr=False)
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
@@ -407,9 +411,9 @@ class ContactPair(Brief):
     @property
     def itself(self) -> bool:
         """Whether it is self-contact of one surface."""
-        if isinstance(self.master, RigidCurve) or isinstance(self.slave, str) != isinstance(
-            self.master, str
-        ):
+        if self.images is not None or isinstance(self.master, RigidCurve):
+            return False
+        if isinstance(self.slave, str) != isinstance(self.master, str):
             return False
         if isinstance(self.slave, str):
             return self.slave == self.master

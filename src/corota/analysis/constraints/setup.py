@@ -105,13 +105,22 @@ def carry_attachments(model: Model, carried: Ints, extra: NDArray[np.uint8]) -> 
 
 
 def carry_curves(model: Model, carried: Ints, extra: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Give reference nodes of rigid curves their dofs; changes `carried`, returns `extra`."""
-    for nodes, count in ((reference_nodes(model), 3), (gap_nodes(model), 2)):
-        nodes = nodes[carried[nodes] < count]
-        if len(nodes):
-            carried[nodes] = count
-            extra = extra if len(extra) else np.zeros(model.mesh.n_nodes, np.uint8)
-            extra[nodes] = count
+    """Give reference nodes of rigid curves and nodes of images their dofs.
+
+    Changes `carried`, returns `extra`.
+    """
+    wanted = np.zeros(model.mesh.n_nodes, np.int64)
+    wanted[gap_nodes(model)] = 2
+    wanted[reference_nodes(model)] = 3
+    for pair in model.contacts:
+        for image in pair.images if pair.images is not None else ():
+            nodes = np.flatnonzero(image >= 0)
+            wanted[image[nodes]] = carried[nodes]
+    short = carried < wanted
+    if short.any():
+        carried[short] = wanted[short]
+        extra = extra if len(extra) else np.zeros(model.mesh.n_nodes, np.uint8)
+        extra[short] = wanted[short]
     return extra
 
 

@@ -67,6 +67,8 @@ class Linearized:
         Unknowns without supports.
     symmetric : bool
         Whether the stiffness of the active unknowns is.
+    residuals : ndarray, shape (n_multipliers,)
+        What a correction adds to the rows of the multipliers: it closes gaps.
     """
 
     def __init__(
@@ -86,7 +88,7 @@ class Linearized:
         self._normal: SuperLU | None = None
         loads = system.conditions.as_reached() if time is None else nullcontext()
         with loads, system.elements.unloading(u):
-            self.at, coupling, self.states, self._laws = linearized_contact(
+            self.at, coupling, self.residuals, self.states, self._laws = linearized_contact(
                 system, u, multipliers, states, time or 0.0
             )
         self.multipliers = self.at.contact_state.multipliers
@@ -163,6 +165,22 @@ class Linearized:
             matrix = matrix + sp.coo_array((entries, (rows, columns)), shape=(n, n))
         force = np.zeros(n) if residual is None else residual
         return self.link.reduce_full(matrix.tocsr(), force).tocsc()
+
+    def of_dofs(self) -> tuple[Any, Any]:
+        """Stiffness of the dofs alone, and what closed surfaces and ties prevent.
+
+        Returns
+        -------
+        stiffness : scipy CSC array, shape (nf, nf)
+            With that of pressure laws.
+        prevented : scipy CSC array, shape (nf, m)
+            Directions in which dofs do not move, one a column.
+        """
+        k = self.stiffness[: self.nf][:, : self.nf]
+        if self._pressures is None:
+            return k, sp.csc_array((self.nf, 0))
+        side = self.stiffness[: self.nf][:, self.nf + self._laws]
+        return (k + side @ self._pressures).tocsc(), self._hard
 
     def padded(self, matrix: Sparse) -> Any:
         """A matrix of the independent dofs with empty rows and columns of the multipliers."""

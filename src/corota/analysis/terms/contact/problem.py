@@ -438,8 +438,8 @@ class ContactProblem:
 
 def linearized_contact(
     system: System, u: Floats, multipliers: Floats | None, states: States | None, time: float
-) -> tuple[Evaluation, Coupling, States, Ints]:
-    """Evaluation with the forces of contact, its rows and states, and multipliers of laws.
+) -> tuple[Evaluation, Coupling, Floats, States, Ints]:
+    """Evaluation with the forces of contact, its rows, residuals, states, and multipliers of laws.
 
     Parameters
     ----------
@@ -455,7 +455,7 @@ def linearized_contact(
     if not term.pairs:
         none, entries = np.zeros(0), Triplets.join([])
         coupling = Coupling(entries, entries, entries, entries, none, none, lambda: stacked([]))
-        return system.evaluate(u.copy(), time), coupling, [], term.law_multipliers()
+        return system.evaluate(u.copy(), time), coupling, none, [], term.law_multipliers()
     if multipliers is None:
         multipliers = term.committed
     contact = ContactProblem(system)
@@ -468,7 +468,7 @@ def linearized_contact(
         ]
     states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
     contact.slip_directions = {p.first: np.ones(p.n) for p in term.pairs}
-    coupling = contact.coupling(at.contact_state, states)[0]
+    coupling, residuals, _ = contact.coupling(at.contact_state, states)
     own, hard = np.zeros(term.n), np.zeros(term.n, bool)
     for pair in term.pairs:
         part = pair.full / pair.stiffness
@@ -479,7 +479,7 @@ def linearized_contact(
     bare = hard & (coupling.diagonal <= 0.0)
     coupling.diagonal[bare] = -COMPLIANCE * own[bare]
     term.revert()
-    return at, coupling, states, term.law_multipliers()
+    return at, coupling, residuals, states, term.law_multipliers()
 
 
 __all__ = ["ContactProblem", "RightHandSides", "linearized_contact"]

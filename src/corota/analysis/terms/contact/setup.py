@@ -172,6 +172,8 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
     master: Surface | None = None
     if not item.itself and not isinstance(item.master, RigidCurve):
         master = surface(system, item.master, item)
+        if item.images is not None:
+            master = master.repeated(item.images)
         longest = max(longest, float(master.length.max()))
     reach = item.reach or REACH * longest
     if _of_lines(slave) or (master is not None and _of_lines(master)):
@@ -193,7 +195,11 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
     corners = item.law is None
     thickness = _thickness(system, slave)
     # Deeper inside a body, the core takes the opposite side for that of another body.
-    depth = 0.5 * float(thickness.min()) if item.itself else float(thickness.max())
+    same = item.itself
+    if item.images is not None and master is not None:
+        part = part_of_cells(mesh)
+        same = bool(np.isin(part[slave.edges[:, 0]], part[master.edges[:, 0]]).any())
+    depth = 0.5 * float(thickness.min()) if same else float(thickness.max())
     try:
         if item.itself:
             slave = along_contour(slave, mesh.points)
@@ -322,8 +328,9 @@ def _check_pair(
 ) -> None:
     mesh = system.model.mesh
     kind = "tie" if isinstance(item, Tie) else "contact pair"
+    imaged = isinstance(item, ContactPair) and item.images is not None
     both = _among(slave.edges, master.edges)
-    if both.any():
+    if both.any() and not imaged:
         cell = mesh.cell_labels[int(slave.edges[int(np.argmax(both)), 0])]
         raise ModelError(
             f"{kind} {item.name!r}: {int(both.sum())} edges are on both surfaces, {slave.name!r} "

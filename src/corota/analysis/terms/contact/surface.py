@@ -83,6 +83,13 @@ class Surface:
             self.half[rows],
         )
 
+    def repeated(self, images: Ints) -> Surface:
+        """The surface on the nodes of its images, one row of `images` for each."""
+        found = self.take(np.tile(np.arange(len(self.edges)), len(images)))
+        nodes = [np.where(self.nodes >= 0, row[self.nodes], -1) for row in images]
+        found.nodes = np.concatenate(nodes)
+        return found
+
     @property
     def node_list(self) -> Ints:
         """Nodes, each once."""

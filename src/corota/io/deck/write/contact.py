@@ -58,6 +58,11 @@ def contact_cards(writer: Writer) -> Iterator[str]:
             limit = "" if pair.shear_limit is None else f", TAUMAX={float(pair.shear_limit)!r}"
             yield f"*FRICTION{limit}\n{float(pair.friction)!r}\n"
         _check_heights(model, pair)
+        if pair.images is not None:
+            raise UnsupportedError(
+                f"contact pair {pair.name!r}: no card of a deck repeats a surface across the "
+                "border of a periodic cell; keep the model in Python"
+            )
         slave, master = surfaces(writer, pair)
         yield from _new_node_surface(writer, pair.slave, known)
         if isinstance(pair.master, RigidCurve) and master not in known:
