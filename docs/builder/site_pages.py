@@ -46,8 +46,8 @@ REFERENCE = {
         + [n for n in MATERIALS if n not in RUBBER]
     ),
     "Rubber materials": " ".join(["WLF", *RUBBER]),
-    "Contact and constraints": "RigidCurve ContactPair PressureLaw gap_element Tie Equation "
-    "Coupling StraightLine LocalAxes",
+    "Contact and constraints": "RigidCurve ContactPair PressureLaw DecayingFriction FrictionTable "
+    "gap_element Tie Equation Coupling StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",
     "Sweeps": "sweep sample grid Sweep seek Sought",
     "Gradients of a run": "gradient value_and_grad optimize shape",

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from corota.model.compiled import CompiledMaterial, Umat
     from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
     from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie, gap_element
+    from corota.model.friction import DecayingFriction, FrictionTable
     from corota.model.hill import Hill
     from corota.model.hyperelastic import (
         ArrudaBoyce,
@@ -107,6 +108,7 @@ _HOMES = {
     "Coupling": "model.constraints",
     "CriticalPoint": "model.paths",
     "Dashpot": "model.attachments",
+    "DecayingFriction": "model.friction",
     "DeckError": "errors",
     "Diagnostic": "errors",
     "DisplacementControl": "model.paths",
@@ -121,6 +123,7 @@ _HOMES = {
     "Force": "model.loads",
     "Frame": "results.results",
     "Frequency": "model.steps",
+    "FrictionTable": "model.friction",
     "History": "results.history",
     "Hyperfoam": "model.hyperelastic",
     "InitialStress": "model.loads",
@@ -224,6 +227,7 @@ __all__ = [
     "CowperSymonds",
     "CriticalPoint",
     "Dashpot",
+    "DecayingFriction",
     "DeckError",
     "Diagnostic",
     "DisplacementControl",
@@ -238,6 +242,7 @@ __all__ = [
     "Force",
     "Frame",
     "Frequency",
+    "FrictionTable",
     "Hill",
     "History",
     "Hyperfoam",

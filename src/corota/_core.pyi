@@ -101,6 +101,7 @@ _Constraints = tuple[
     _Floats,
     _Floats | None,
     NDArray[np.bool_] | None,
+    _Floats | None,
 ]
 
 def line_contact(

@@ -82,7 +82,7 @@ def test_rows_and_columns_are_derivatives(method, law):
         first, second = pair.first, pair.first + pair.n
         gone[first:second], gone[second : first + pair.width] = s == OPEN, s != CLOSED
         slips = np.flatnonzero(s == SLIPPING)
-        follow = pair.friction * self.slip_directions[first][slips] * dp[first + slips]
+        follow = pair.friction[slips] * self.slip_directions[first][slips] * dp[first + slips]
         dz[n + first : n + second][s == OPEN] = 0.0
         dz[n + second : n + first + pair.width][s != CLOSED] = 0.0
         dz[n + second + slips] = follow

@@ -14,6 +14,7 @@ pub struct Constraints<'a> {
     pub stiffness: &'a [f64],
     pub begin: Option<&'a [f64]>,
     pub adheres: Option<&'a [bool]>,
+    pub friction: Option<&'a [f64]>,
     pub noise: f64,
 }
 
@@ -40,6 +41,7 @@ impl Constraints<'_> {
             q,
             noise: self.noise,
             adheres: self.adheres.is_some_and(|a| a[i]),
+            friction: self.friction.map_or(0.0, |f| f[i]),
         }
     }
 

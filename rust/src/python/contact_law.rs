@@ -14,8 +14,8 @@ type Floats<'py> = PyReadonlyArray1<'py, f64>;
 type Out<'py> = Bound<'py, PyArray1<f64>>;
 
 /// Weighted gaps and slips, covered and whole areas, areas of pressure laws, stiffness, and the
-/// weighted gaps that an increment began with, or None, and which constraints do not open, or None:
-/// what all methods take as ``at``.
+/// weighted gaps that an increment began with, or None, which constraints do not open, or None, and
+/// coefficients of friction, or None: what all methods take as ``at``.
 #[derive(FromPyObject)]
 struct At<'py>(
     Floats<'py>,
@@ -26,6 +26,7 @@ struct At<'py>(
     Floats<'py>,
     Option<Floats<'py>>,
     Option<PyReadonlyArray1<'py, bool>>,
+    Option<Floats<'py>>,
 );
 
 impl At<'_> {
@@ -39,11 +40,12 @@ impl At<'_> {
             stiffness: self.5.as_slice()?,
             begin: self.6.as_ref().map(|b| b.as_slice()).transpose()?,
             adheres: self.7.as_ref().map(|a| a.as_slice()).transpose()?,
+            friction: self.8.as_ref().map(|f| f.as_slice()).transpose()?,
             noise,
         };
         let n = found.len();
         let others = [found.slip, found.area, found.full, found.fixed, found.stiffness];
-        for part in others.into_iter().chain(found.begin) {
+        for part in others.into_iter().chain(found.begin).chain(found.friction) {
             same(part.len(), n)?;
         }
         same(found.adheres.map_or(n, <[bool]>::len), n)?;
@@ -60,11 +62,11 @@ fn same(found: usize, wanted: usize) -> PyResult<()> {
 
 /// The law of the constraints of a contact pair, or of a tie.
 ///
-/// ``at`` are the arrays (gap, slip, area, full, fixed, stiffness, begin, adheres), each of shape (n,): the
+/// ``at`` are the arrays (gap, slip, area, full, fixed, stiffness, begin, adheres, friction), each of shape (n,): the
 /// weighted gap and slip [length^3], the area covered now, the whole one and that of pressure laws
 /// [length^2], the pressure per gap by which both are compared [force/length^3], and the weighted
-/// gap that the increment began with, or None, and which do not open, or None. ``p`` and ``q`` are pressure and shear traction
-/// [force/length^2]. States are 0 open, 1 closed (and sticking), 2 slipping.
+/// gap that the increment began with, or None, which do not open, or None, and coefficients of
+/// friction, or None. ``p`` and ``q`` are pressure and shear traction [force/length^2]. States are 0 open, 1 closed (and sticking), 2 slipping.
 #[pyclass(module = "corota._core", frozen)]
 struct ContactLaw {
     law: Law,

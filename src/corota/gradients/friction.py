@@ -131,7 +131,7 @@ def _by_multipliers(system: System, u: Floats, time: float, surfaces: Surfaces) 
         for k in np.flatnonzero((state_of != CLOSED) & (state_of != 0)):
             own = pair.first + pair.n + k
             diagonal[own, own] = 1.0
-            diagonal[own, pair.first + k] = -sign[k] * pair.friction
+            diagonal[own, pair.first + k] = -sign[k] * pair.friction[k]
     return border, diagonal.tocsr()
 
 

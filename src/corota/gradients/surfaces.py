@@ -86,8 +86,8 @@ def refuse_surfaces(model: Model) -> None:
             why = "a law of pressure against overclosure"
         elif pair.shear_limit is not None or not pair.separates or pair.steps is not None:
             why = "a largest shear traction, surfaces that do not separate, or steps without them"
-        elif pair.friction_steps:
-            why = "friction that steps change"
+        elif pair.friction_steps or pair.varies:
+            why = "friction that steps change or that depends on slip rate and pressure"
         elif pair.stabilize:
             why = "stabilization, which depends on increments"
         else:
@@ -140,7 +140,7 @@ def find(system: System, u: Floats, time: float, at: Evaluation, kinks: bool = F
     signs = []
     for k, (pair, (p, q)) in enumerate(zip(term.pairs, term.parts(multipliers), strict=True)):
         signs.append(np.sign(q) if pair.two else np.zeros(0))
-        if pair.friction:
+        if pair.rubs:
             slips = (states[k] == CLOSED) & (np.abs(q) >= (1.0 - LIMIT) * pair.friction * p)
             states[k][slips] = SLIPPING
             if not kinks:

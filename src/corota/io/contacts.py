@@ -11,8 +11,10 @@ import numpy as np
 
 from corota.io.datasets import store
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, edges_or_nodes
+from corota.model.friction import DecayingFriction, FrictionTable
 
 if TYPE_CHECKING:
+    from corota.model.friction import Friction
     from corota.model.model import Model
 
 
@@ -45,7 +47,21 @@ def _settings(pair: ContactPair) -> dict[str, Any]:
     if pair.law is not None:
         kind, pressure, overclosure = pair.law.constants
         settings["law"] = {"kind": kind, "pressure": pressure, "overclosure": overclosure}
+    settings["friction"] = _friction(pair.friction)
+    settings["friction_steps"] = {k: _friction(mu) for k, mu in pair.friction_steps.items()}
     return settings
+
+
+def _friction(friction: Friction) -> Any:
+    """A number, or the data of a coefficient that varies."""
+    return vars(friction) if callable(friction) else friction
+
+
+def _friction_of(stored: Any) -> Friction:
+    """The coefficient of friction from what a file holds."""
+    if not isinstance(stored, dict):
+        return float(stored)
+    return FrictionTable(**stored) if "rows" in stored else DecayingFriction(**stored)
 
 
 def _name(side: Any) -> str:
@@ -71,6 +87,9 @@ def contacts_of_results(file: Any) -> list[ContactPair]:
         settings = json.loads(own.attrs.get("settings", "{}"))
         if "law" in settings:
             settings["law"] = PressureLaw(**settings["law"])
+        settings["friction"] = _friction_of(settings.get("friction", 0.0))
+        steps = settings.get("friction_steps", {})
+        settings["friction_steps"] = {int(k): _friction_of(mu) for k, mu in steps.items()}
         pairs.append(ContactPair(slave, master, name=str(own.attrs["name"]), **settings))
     return pairs
 

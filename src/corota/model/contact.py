@@ -12,6 +12,7 @@ import numpy as np
 import corota._core as _core
 from corota.display import Brief
 from corota.errors import InputError, Location
+from corota.model.friction import MOST_FRICTION, coefficients, described, largest
 from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
@@ -22,11 +23,10 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
     Floats = NDArray[np.float64]
     from corota.mesh.data import Mesh
+    from corota.model.friction import Friction
 
     Reference = int | str | tuple[float, float] | None
 
-#: Largest friction coefficient: no pressure lets surfaces slip with it.
-MOST_FRICTION = 1e6
 #: Half the length of the line of a gap element, in sizes of the model: sideways nothing ends it.
 FAR = 10.0
 #: Treatment of overlaps and gaps at the start.
@@ -280,8 +280,9 @@ class ContactPair(Brief):
     method : {"mortar", "node_to_segment"}
         Gaps weighted and integrated over slave edges, or measured at slave nodes. Where a line or
         single nodes take part, they are always measured at nodes, ends and corners.
-    friction : float
-        Coulomb coefficient from 0 to 1e6; surfaces stick with the largest.
+    friction : float, DecayingFriction or FrictionTable
+        Coulomb coefficient from 0 to 1e6; surfaces stick with the largest. Or one that depends on
+        slip rate and pressure.
     law : PressureLaw, optional
         Pressure against overclosure; without it, contact is hard.
     clearance : float, optional
@@ -312,7 +313,7 @@ class ContactPair(Brief):
     steps : tuple of int, optional
         Numbers of the steps in which the surfaces may meet, from 1; all by default. What they
         pressed at the end of the step before fades over the first static step without them.
-    friction_steps : mapping of int to float, optional
+    friction_steps : mapping of int to a coefficient as `friction`, optional
         Other coefficients, each from the begin of a step (its number, from 1) on.
     friction_ramps : bool
         Whether these grow from the coefficient before over a static step whose loads grow.
@@ -324,7 +325,7 @@ class ContactPair(Brief):
     slave: str | Ints
     master: str | Ints | RigidCurve
     method: str = "mortar"
-    friction: float = 0.0
+    friction: Friction = 0.0
     law: PressureLaw | None = None
     clearance: float | None = None
     start: Literal["keep", "adjust", "ramp"] = "keep"
@@ -339,7 +340,7 @@ class ContactPair(Brief):
     shear_limit: float | None = field(default=None, kw_only=True)
     separates: bool = field(default=True, kw_only=True)
     steps: tuple[int, ...] | None = field(default=None, kw_only=True)
-    friction_steps: Mapping[int, float] = field(default_factory=dict, kw_only=True)
+    friction_steps: Mapping[int, Friction] = field(default_factory=dict, kw_only=True)
     friction_ramps: bool = field(default=True, kw_only=True)
     images: Ints | None = field(default=None, kw_only=True, repr=False)
 
@@ -353,8 +354,8 @@ class ContactPair(Brief):
                 f"start must be one of {', '.join(STARTS)}, not {self.start!r}", self.where
             )
         for what, value in (
-            ("friction", self.friction),
-            *(("friction", value) for value in self.friction_steps.values()),
+            ("friction", largest(self.friction)),
+            *(("friction", largest(value)) for value in self.friction_steps.values()),
             ("reach", self.reach),
             ("adjusted gap", self.adjust),
         ):
@@ -374,7 +375,7 @@ class ContactPair(Brief):
         if limit is not None and not (0.0 < limit < math.inf and self.most_friction):
             raise InputError(
                 f"the largest shear traction must be > 0 and go with friction, not {limit:g} with "
-                f"{self.friction:g}",
+                f"{described(self.friction)}",
                 self.where,
             )
         if not self.separates and self.law is not None:
@@ -400,13 +401,33 @@ class ContactPair(Brief):
     @property
     def most_friction(self) -> float:
         """Largest coefficient of all steps."""
-        return max(self.friction, *self.friction_steps.values(), 0.0)
+        return max(map(largest, (self.friction, *self.friction_steps.values())))
 
-    def friction_at(self, step: int, share: float) -> float:
-        """Coefficient of friction in a step (from 1), at a share of its change in that step."""
-        changes = [self.friction, *(mu for n, mu in self.friction_steps.items() if n < step)]
-        new = self.friction_steps.get(step, changes[-1])
-        return changes[-1] + share * (new - changes[-1])
+    @property
+    def varies(self) -> bool:
+        """Whether its friction depends on slip rate or pressure, in some step."""
+        return any(callable(mu) for mu in (self.friction, *self.friction_steps.values()))
+
+    def friction_at(self, step: int, share: float, rate: Floats, pressure: Floats) -> Floats:
+        """Coefficients of friction in a step, at a share of its change in that step.
+
+        Parameters
+        ----------
+        step : int
+            Its number, from 1.
+        share : float
+        rate, pressure : ndarray, shape (n,)
+            Slip rates [length/time] and pressures [force/length^2].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        old = [self.friction, *(mu for n, mu in self.friction_steps.items() if n < step)][-1]
+        at = coefficients(old, rate, pressure)
+        if step not in self.friction_steps:
+            return at
+        return at + share * (coefficients(self.friction_steps[step], rate, pressure) - at)
 
     @property
     def itself(self) -> bool:

@@ -63,6 +63,7 @@ if TYPE_CHECKING:
 
     from corota.errors import Diagnostic
     from corota.mesh import Mesh
+    from corota.model.friction import Friction
     from corota.model.loads import Force
     from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
@@ -476,7 +477,7 @@ class Model(Loading, LineSections, InitialFields, Stages):
         master: str | ArrayLike | RigidCurve,
         *,
         method: str = "mortar",
-        friction: float = 0.0,
+        friction: Friction = 0.0,
         law: PressureLaw | None = None,
         clearance: float | None = None,
         start: Literal["keep", "adjust", "ramp"] = "keep",
@@ -487,7 +488,7 @@ class Model(Loading, LineSections, InitialFields, Stages):
         shear_limit: float | None = None,
         separates: bool = True,
         steps: Sequence[int] | None = None,
-        friction_steps: Mapping[int, float] | None = None,
+        friction_steps: Mapping[int, Friction] | None = None,
         friction_ramps: bool = True,
         name: str = "",
     ) -> None:

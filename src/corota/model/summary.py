@@ -10,6 +10,7 @@ import numpy as np
 from corota.model import elements
 from corota.model.constraints import Coupling
 from corota.model.contact import RigidCurve
+from corota.model.friction import described
 from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
@@ -106,8 +107,8 @@ def joint_lines(model: Model) -> list[str]:
         law = pair.law.kind if pair.law is not None else "hard"
         lines.append(
             f"contact {_named(pair.slave)} on {_named(pair.master)}: {pair.method}, {law}, "
-            f"friction {pair.friction:g}"
-            + "".join(f", {mu:g} from step {n}" for n, mu in pair.friction_steps.items())
+            f"friction {described(pair.friction)}"
+            + "".join(f", {described(mu)} from step {n}" for n, mu in pair.friction_steps.items())
             + (f" up to {pair.shear_limit:g}" if pair.shear_limit is not None else "")
             + ("" if pair.separates else ", no separation")
             + ("" if pair.steps is None else f", in steps {', '.join(map(str, pair.steps))}")

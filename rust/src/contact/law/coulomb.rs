@@ -5,23 +5,22 @@
 use super::{Constraint, State, TangentialEntry, TangentialLaw, maximum, minimum};
 
 pub const ENTRY: TangentialEntry = ("coulomb", |coefficients| match coefficients {
-    [mu] => Ok(Box::new(Coulomb { mu: *mu, most: f64::INFINITY })),
-    [mu, most] => Ok(Box::new(Coulomb { mu: *mu, most: *most })),
-    _ => Err("friction has a coefficient and a largest traction".into()),
+    [] => Ok(Box::new(Coulomb { most: f64::INFINITY })),
+    [most] => Ok(Box::new(Coulomb { most: *most })),
+    _ => Err("friction has a largest traction; its coefficient is one of the constraints".into()),
 });
 
 /// What slips goes on above this share of the bound: at the bound rounding would decide.
 const GOES_ON: f64 = 1.0 - 1e-6;
 
-/// Coefficient of friction, and the largest shear traction.
+/// The largest shear traction; each constraint has its own coefficient.
 pub struct Coulomb {
-    mu: f64,
     most: f64,
 }
 
 impl Coulomb {
-    fn bound(&self, pressure: f64) -> f64 {
-        minimum(self.mu * pressure, self.most)
+    fn bound(&self, at: &Constraint, pressure: f64) -> f64 {
+        minimum(at.friction * pressure, self.most)
     }
 }
 
@@ -30,14 +29,14 @@ impl TangentialLaw for Coulomb {
         let slipped = last == Some(State::Slipping);
         // What touches, with a gap that is rounding, has no pressure yet and sticks; what adheres
         // is pulled.
-        let bound = self.bound(if at.adheres { pressure } else { maximum(pressure, 0.0) });
+        let bound = self.bound(at, if at.adheres { pressure } else { maximum(pressure, 0.0) });
         let bound = if slipped { GOES_ON * bound } else { bound };
         // What turns round sticks first.
         shear.abs() > bound && (!slipped || shear * at.q >= 0.0)
     }
 
     fn error(&self, at: &Constraint) -> f64 {
-        let bound = self.bound(maximum(at.p, 0.0));
+        let bound = self.bound(at, maximum(at.p, 0.0));
         let trial = at.q - at.stiffness * at.distances()[1];
         let projected = minimum(maximum(trial, -bound), bound);
         (at.q - if at.seen() { projected } else { 0.0 }).abs()
@@ -46,10 +45,10 @@ impl TangentialLaw for Coulomb {
     fn slipping(&self, at: &Constraint) -> [f64; 2] {
         if at.adheres && at.p < 0.0 {
             [0.0; 2]
-        } else if self.mu * at.p > self.most {
+        } else if at.friction * at.p > self.most {
             [0.0, self.most]
         } else {
-            [self.mu, 0.0]
+            [at.friction, 0.0]
         }
     }
 }

@@ -67,6 +67,8 @@ pub struct Constraint {
     pub noise: f64,
     /// Whether it does not open: it was closed, and its surfaces do not separate.
     pub adheres: bool,
+    /// Coefficient of friction.
+    pub friction: f64,
 }
 
 impl Constraint {

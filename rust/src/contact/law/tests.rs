@@ -10,8 +10,7 @@ fn law(normal: &str, tangential: &str) -> ContactLaw {
         "tabular" => CONSTANTS,
         _ => (&CONSTANTS.0[1..2], &CONSTANTS.1[..1]),
     };
-    let coefficients: &[f64] = if tangential == "coulomb" { &[0.3] } else { &[] };
-    ContactLaw::new(normal, pressures, overclosures, tangential, coefficients).unwrap()
+    ContactLaw::new(normal, pressures, overclosures, tangential, &[]).unwrap()
 }
 
 fn constraint(gap: f64, p: f64, q: f64) -> Constraint {
@@ -27,6 +26,7 @@ fn constraint(gap: f64, p: f64, q: f64) -> Constraint {
         q,
         noise: 1e-14,
         adheres: false,
+        friction: 0.3,
     }
 }
 

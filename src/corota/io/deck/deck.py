@@ -108,6 +108,8 @@ class Deck:
     #: Read the values of attached elements, when all elements are known.
     properties: list[Callable[[], None]] = field(default_factory=list)
     connectors: list[ConnectorDraft] = field(default_factory=list)
+    #: Motions and loads of connectors, each with the index of its step.
+    drives: list[tuple[int, Draft]] = field(default_factory=list)
     #: ``*CONNECTOR BEHAVIOR`` by name, and the last one.
     behaviors: dict[str, BehaviorDraft] = field(default_factory=dict)
     behavior: BehaviorDraft | None = None

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from corota.errors import Location
 from corota.io.deck.lexer import Card, Row, key
+from corota.model.friction import largest
 
 if TYPE_CHECKING:
     from corota.mesh.data import Floats, Ints
+    from corota.model.friction import Friction
     from corota.model.loads import LoadKind
     from corota.model.materials import Elastic, Expansion
     from corota.model.rates import Norton
@@ -87,6 +89,15 @@ class Surface:
 
 
 @dataclass(eq=False, repr=False)
+class DistributionDraft:
+    """One ``*DISTRIBUTION``: lines of an element or set, blank for all, and its values."""
+
+    name: str
+    card: Card
+    rows: list[Row]
+
+
+@dataclass(eq=False, repr=False)
 class SectionDraft:
     """One ``*SOLID SECTION``."""
 
@@ -104,6 +115,8 @@ class SectionDraft:
     nodal: bool = False
     #: Whether any thickness is given.
     given: bool = True
+    #: Distribution of the thickness by element.
+    thicknesses: str = ""
 
 
 @dataclass(eq=False, repr=False)
@@ -294,6 +307,9 @@ class Scope:
     sections: list[SectionDraft] = field(default_factory=list)
     lines: list[LineDraft] = field(default_factory=list)
     orientations: dict[str, float] = field(default_factory=dict)
+    distributions: dict[str, DistributionDraft] = field(default_factory=dict)
+    #: Orientations by element: card, distribution, and an angle more [rad].
+    axes_by_element: dict[str, tuple[Card, str, float]] = field(default_factory=dict)
 
     def joined(self, own: Scope) -> Scope:
         """The data of a part with those that one of its instances adds."""
@@ -307,6 +323,8 @@ class Scope:
             self.sections + own.sections,
             self.lines + own.lines,
             {**self.orientations, **own.orientations},
+            {**self.distributions, **own.distributions},
+            {**self.axes_by_element, **own.axes_by_element},
         )
 
 
@@ -345,6 +363,8 @@ class AttachedDraft:
     table: tuple[tuple[float, float], ...] = ()
     scope: Scope = field(default_factory=lambda: Scope())
     connector: ConnectorDraft | None = None
+    #: Driven components: place of the element, component, first card, the node of its motion.
+    controls: list[tuple[int, int, Draft, Draft]] = field(default_factory=list)
 
 
 @dataclass(eq=False, repr=False)
@@ -370,6 +390,7 @@ class BehaviorDraft:
     elastic: dict[int, tuple[Card, list[Row]]] = field(default_factory=dict)
     damped: dict[int, tuple[Card, list[Row]]] = field(default_factory=dict)
     rigid: set[int] = field(default_factory=set)
+    stops: dict[int, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(eq=False, repr=False)
@@ -432,9 +453,9 @@ class InteractionDraft:
     law_where: Location | None = None
     pressure: list[float] = field(default_factory=list)
     overclosure: list[float] = field(default_factory=list)
-    friction: float = 0.0
+    friction: Friction = 0.0
     #: Coefficients that begin with steps, and whether they are reached at the end of the step.
-    friction_steps: dict[int, float] = field(default_factory=dict)
+    friction_steps: dict[int, Friction] = field(default_factory=dict)
     friction_ramps: bool = False
     #: Largest shear traction, and whether what has met separates.
     shear_limit: float | None = None
@@ -443,7 +464,7 @@ class InteractionDraft:
     @property
     def rubs(self) -> bool:
         """Whether it has friction in any step."""
-        return max(self.friction, *self.friction_steps.values(), 0.0) > 0.0
+        return max(map(largest, (self.friction, *self.friction_steps.values()))) > 0.0
 
 
 @dataclass(eq=False, repr=False)
@@ -573,6 +594,7 @@ __all__ = [
     "AttachedDraft",
     "BehaviorDraft",
     "ConnectorDraft",
+    "DistributionDraft",
     "Draft",
     "ElementBlock",
     "EmbeddedDraft",

@@ -143,11 +143,15 @@ _TABLE: dict[str, Keyword] = {
     ),
     "SHELL SECTION": Keyword(
         card("material.shell_section"),
-        "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS",
+        "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS SHELLTHICKNESS",
         "OFFSET CONTROLS POISSON SECTIONINTEGRATION TEMPERATURE DENSITY THICKNESSMODULUS ZERO "
         "STACKDIRECTION SYMMETRIC LAYUP",
         place="model",
     ),
+    "DISTRIBUTION": Keyword(
+        card("distribution.distribution"), "NAME LOCATION TABLE", place="model"
+    ),
+    "DISTRIBUTION TABLE": Keyword(card("distribution.distribution_table"), "NAME", place="model"),
     "NODAL THICKNESS": Keyword(card("material.nodal_thickness"), place="model"),
     "IMPERFECTION": Keyword(
         card("imperfection.imperfection"), "FILE STEP INC NSET SYSTEM", place="model"
@@ -248,6 +252,13 @@ _TABLE: dict[str, Keyword] = {
         "TYPE REGULARIZE RTOL EXTRAPOLATION",
         place="model",
     ),
+    "CONNECTOR STOP": Keyword(
+        card("connectors.connector_stop"), "COMPONENT", "REGULARIZE", place="model"
+    ),
+    "CONNECTOR MOTION": Keyword(
+        card("connectors.connector_motion"), "AMPLITUDE OP TYPE", place="step"
+    ),
+    "CONNECTOR LOAD": Keyword(card("connectors.connector_load"), "AMPLITUDE OP", place="step"),
     "RELEASE": Keyword(card("release.release"), place="model"),
     "GAP": Keyword(card("attachments.gap"), "ELSET", place="model"),
     "INITIAL CONDITIONS": Keyword(
@@ -318,7 +329,7 @@ _TABLE: dict[str, Keyword] = {
     ),
     "FRICTION": Keyword(
         card("contact.friction"),
-        "ROUGH TAUMAX",
+        "ROUGH TAUMAX EXPONENTIALDECAY",
         "SLIPTOLERANCE LAGRANGE ELASTICSLIP SHEARTRACTIONSLOPE",
     ),
     "CHANGE FRICTION": Keyword(card("contact.change_friction"), "INTERACTION RESET RAMP"),

@@ -155,22 +155,17 @@ UNSUPPORTED: dict[str, str] = {
     "REBARLAYER": "give bars as trusses in *EMBEDDED ELEMENT",
     "REBAR": "give bars as trusses in *EMBEDDED ELEMENT",
     "ANNEALTEMPERATURE": "hardening stays at any temperature: leave the card out below it",
-    "DISTRIBUTIONTABLE": "values given by element are not part of this version",
     "LOADCASE": "give each load case a *STEP, PERTURBATION of its own",
     "ENDLOADCASE": "give each load case a *STEP, PERTURBATION of its own",
     "SUBMODEL": "submodels are not part of this version",
     "SUBSTRUCTUREGENERATE": "substructures are not part of this version",
     "CHANGESOLIDSECTION": "sections cannot change between steps",
     "CHANGEMATERIAL": "materials cannot change between steps",
-    "DISTRIBUTION": "values given by element are not part of this version",
     "NORMAL": "planar elements have no normals of their own",
-    "CONNECTORSTOP": "give stops by *GAP",
     "CONNECTORLOCK": "give stops by *GAP",
     "CONNECTORFRICTION": "connectors slide without friction; use *CONTACT PAIR",
     "CONNECTORPLASTICITY": "connectors are elastic: give CONNECTOR ELASTICITY, or a truss",
     "CONNECTORCONSTITUTIVEREFERENCE": "a connector is free of force as it is drawn: move a node",
-    "CONNECTORMOTION": "move the nodes by *BOUNDARY, or join their dofs by *EQUATION",
-    "CONNECTORLOAD": "load the nodes by two *CLOAD",
     "CONNECTORDAMAGEINITIATION": "connectors do not fail",
     "CONNECTORDAMAGEEVOLUTION": "connectors do not fail",
     "CONNECTORFAILURE": "connectors do not fail",
@@ -209,8 +204,8 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("SHELLSECTION", "COMPOSITE"): "layers are not part of this version",
     ("SPRING", "ORIENTATION"): "give the springs global directions",
     ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
-    ("FRICTION", "ANISOTROPIC"): "friction has one coefficient",
-    ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",
+    ("FRICTION", "ANISOTROPIC"): "in the plane there is one direction of sliding; leave it out",
+    ("FRICTION", "TESTDATA"): "give the static and the kinetic coefficient and the decay",
     ("CHANGEFRICTION", "AMPLITUDE"): "the change is linear over the step (RAMP), or at once",
     ("CHANGEFRICTION", "NSET"): "the friction of all nodes of an interaction is the same",
     ("FRICTION", "USER"): "no user subroutine is called",
@@ -237,6 +232,7 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
             "EXPANSION",
             "PLASTIC",
             "CYCLICHARDENING",
+            "FRICTION",
             *LAWS,
         )
     },
@@ -257,7 +253,15 @@ WITHOUT_EFFECT: dict[tuple[str, str], str] = {
     ("DLOAD", "SECTOR"): "1",
     **{
         (keyword, "DEPENDENCIES"): "0"
-        for keyword in ("ELASTIC", "DENSITY", "EXPANSION", "PLASTIC", "CYCLICHARDENING", *LAWS)
+        for keyword in (
+            "ELASTIC",
+            "DENSITY",
+            "EXPANSION",
+            "PLASTIC",
+            "CYCLICHARDENING",
+            "FRICTION",
+            *LAWS,
+        )
     },
     ("RATEDEPENDENT", "EXTRAPOLATION"): "CONSTANT",
 }

@@ -217,8 +217,8 @@ class ContactTerm(Term):
         ramps = bool(getattr(step, "ramp", False))
         #: Whether coefficients of friction change with the loads of the step.
         self.rubs = self.damps and ramps
-        for pair in self.pairs:
-            pair.rub(self.number, self._changed(pair, 0.0))
+        for pair, (p, _) in zip(self.pairs, self.parts(self.committed), strict=True):
+            pair.rub(self.number, self._changed(pair, 0.0), p)
         self._enter(scheme == "central_difference", ramps)
         if self._stiff:
             self._damp()
@@ -248,6 +248,12 @@ class ContactTerm(Term):
             limited = pair.shear_limit < np.inf
             adheres = not pair.tied and not pair.separates
             path = getattr(step, "path", None) is not None
+            if path and isinstance(pair.item, ContactPair) and pair.item.varies:
+                raise UnsupportedError(
+                    f"contact pair {pair.name!r}: friction that depends on slip rate or pressure "
+                    "is not part of path control, which has no time; use steps under loads",
+                    pair.item.where,
+                )
             other = scheme in ("central_difference", "energy_momentum")
             if (limited or adheres) and (path or other):
                 what = "that do not separate" if adheres else "with a largest shear traction"
@@ -433,8 +439,9 @@ class ContactTerm(Term):
         for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
             with system.timed("contact"):
                 pair.core.offset = self.offset_at(pair, step_time)
-                pair.rub(self.number, self._changed(pair, step_time))
                 terms = pair.evaluate(x, old, system.nlgeom, bool(p.any() or q.any()))
+                pair.slide(terms, step_time - self.time)
+                pair.rub(self.number, self._changed(pair, step_time), p)
             found.append(terms)
             acting = terms.acting
             where = self.dofs(acting.variables)
@@ -599,6 +606,7 @@ class ContactTerm(Term):
         for pair in self.pairs:
             pair.core.restore()
             pair.frozen = False
+            pair.rate = pair.committed_rate
         self.slip_start = self.springs = self.trial_kink = None
 
     def energies(self) -> dict[str, float]:

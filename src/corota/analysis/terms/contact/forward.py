@@ -16,6 +16,7 @@ is too stiff for the increment, the gap at its end, as if there were none. Both 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -142,6 +143,9 @@ class ForwardContact:
         contact, system = self.contact, self.contact.system
         with system.timed("contact"):
             x = contact.positions(u)
+            # Coefficients of friction are those at the slip rates of the increment before.
+            for pair, (p, _) in zip(contact.pairs, contact.parts(contact.committed), strict=True):
+                pair.rub(contact.number, 1.0, p)
             found = [self._look(pair, x, time) for pair in contact.pairs]
             problem = _Increment(self, found, ahead, before, share, inverse, time)
             multipliers = problem.solve()
@@ -190,7 +194,7 @@ class ForwardContact:
             seen = terms.area > COVERED * pair.full
             pair.area = np.where(seen, terms.area, pair.full)
             account.impact += pair.law_energy(terms) - stored
-            if not pair.friction:
+            if not pair.rubs:
                 continue
             slip = travel(contact, terms, terms.slip_gradient, moved, pair.n)
             more = travel(contact, terms, terms.slip_gradient, ahead, pair.n)
@@ -199,6 +203,7 @@ class ForwardContact:
             pair.friction_work += rubbed
             account.impact += rubbed
             pair.slid += np.where(q != 0.0, slip / pair.area, 0.0)
+            pair.slide(replace(terms, slip=slip), self.dt)
 
     def _commit(
         self,
@@ -252,7 +257,7 @@ class _Increment:
         self.area, self.full, gap, slip, noise = (np.concatenate(v) for v in joined.values())
         self.tied = np.repeat([pair.tied for pair in pairs], counts)
         self.ruled = np.repeat([pair.law is not None for pair in pairs], counts)
-        self.friction = np.repeat([pair.friction for pair in pairs], counts)
+        self.friction = np.concatenate([pair.friction for pair in pairs])
         self.two = np.repeat([pair.two for pair in pairs], counts)
         self.seen = self.area > COVERED * self.full
         self.tolerance = noise * self.full

@@ -73,7 +73,7 @@ def impact_error(
     for k, (pair, terms, (_, q)) in enumerate(
         zip(term.pairs, contact_state.terms, parts, strict=True)
     ):
-        if pair.friction:
+        if pair.rubs:
             work -= float(q @ terms.slip)
         if pair.law is not None:
             before = 0.0 if term.at is None else pair.law_energy(term.at.terms[k])

@@ -200,7 +200,7 @@ def _kink(
     low, high, jump = at
     # Gaps are continuous: the jump of their gradients is normal to the kink. Slips are not.
     pressures = jump
-    if any(pair.friction for pair in sides.term.pairs):
+    if any(pair.rubs for pair in sides.term.pairs):
         pressures = sides.state(place(high), False).force - sides.state(place(low), False).force
     moves = np.where(sides.term.system.is_rotation, 0.0, pressures)
     size = float(np.sqrt(moves @ moves))

@@ -123,7 +123,7 @@ def second_derivatives(
         keep = (a >= 0) & (b >= 0) & (flat != 0.0)
         return Triplets(a[keep], b[keep], flat[keep])
 
-    if not pair.friction or not q.any():
+    if not pair.rubs or not q.any():
         return entries(values), Triplets.join([])
     turned = values.transpose(0, 2, 1)
     return entries(0.5 * (values + turned)), entries(0.5 * (values - turned))

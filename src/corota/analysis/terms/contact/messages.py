@@ -91,7 +91,7 @@ def gives_way(contact_term: ContactTerm) -> str:
         if pair.tied or not total > 0.0:
             continue
         bound = float((pair.bound(np.maximum(p, 0.0)) * terms.area).sum())
-        if pair.friction and float(np.abs(q * terms.area).sum()) > WHOLE * bound:
+        if pair.rubs and float(np.abs(q * terms.area).sum()) > WHOLE * bound:
             return (
                 f"friction of contact pair {pair.name!r} is used up: a body that it alone holds "
                 "slides"
@@ -133,7 +133,7 @@ def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
     The last edge keeps its mean gap. Of a round with the radius R it is h^2/12R deeper than the
     gaps of its nodes, which all other edges take, and without friction this one as well.
     """
-    if pair.beside is None or pair.tied or not pair.rough or (pair.slave.nodes[:, 2] >= 0).any():
+    if pair.beside is None or pair.tied or not pair.two or (pair.slave.nodes[:, 2] >= 0).any():
         return ""
     left, right = pair.beside
     for k in np.flatnonzero(pair.guided_ends):

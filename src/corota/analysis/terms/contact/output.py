@@ -76,7 +76,7 @@ def output(
             area[pair.backed(terms, state)] = 0.0
             sums[f"{pair.name}: gap"] = float(gap.min(initial=pair.reach))
             sums[f"{pair.name}: area"] = float(closed.sum() + area.sum())
-        if pair.friction:
+        if pair.rubs:
             shear = resultant(pair, acting, np.zeros_like(p), q, x)
             for name, value in zip(("x", "y", "moment"), shear, strict=True):
                 sums[f"{pair.name}: friction {name}"] = value

@@ -24,7 +24,17 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     Bools = NDArray[np.bool_]
-    Constraints = tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats | None, Bools | None]
+    Constraints = tuple[
+        Floats,
+        Floats,
+        Floats,
+        Floats,
+        Floats,
+        Floats,
+        Floats | None,
+        Bools | None,
+        Floats | None,
+    ]
 
 #: Deformations below this fraction of the model's size are rounding.
 NONE = 1e-8
@@ -38,6 +48,7 @@ AMPLE = 0.5
 #: Coefficient that stands for zero where it is larger in other steps.
 LEAST_FRICTION = 1e-9
 EPS = float(np.finfo(float).eps)
+ALL = slice(None)
 #: Variables of a term, as in the core.
 WIDTH = 20
 #: Edges by which its friction would move a slave node whose stiffness does not count, and the slip
@@ -75,8 +86,6 @@ class Pair:
     def __init__(self, system: NumberedModel, item: ContactPair | Tie) -> None:
         self.item = item
         self.tied = isinstance(item, Tie)
-        #: Coefficient of friction now.
-        self.friction = 0.0 if isinstance(item, Tie) else item.friction_at(1, 1.0)
         self.law = None if isinstance(item, Tie) else item.law
         #: Largest shear traction of friction [force/length^2].
         limit = None if isinstance(item, Tie) else item.shear_limit
@@ -89,6 +98,11 @@ class Pair:
         self.core, self.slave, self.master, self.reach, self.depth = core
         self.nodes = np.asarray(self.core.nodes, np.int64)
         self.n = len(self.nodes)
+        #: Whether friction acts, in some step at least, and its coefficients now.
+        self.rubs = isinstance(item, ContactPair) and item.most_friction > 0.0
+        self.friction = np.zeros(self.n)
+        #: Slip rates [length/time] now and at the committed state.
+        self.rate = self.committed_rate = np.zeros(self.n)
         self.of_nodes = len(distinct(self.nodes))
         self.corners = np.asarray(self.core.corners, np.int64)
         self.of_surfaces = self.n - len(self.corners)
@@ -96,7 +110,8 @@ class Pair:
         self.place = np.full(len(system.per_node) + 1, -1, np.int64)
         self.place[self.nodes[: self.of_nodes]] = np.arange(self.of_nodes)
         self.full = np.asarray(self.core.full_area, float)
-        self.two = isinstance(item, Tie) or item.most_friction > 0.0
+        #: Whether shear tractions are unknowns, in some step at least.
+        self.two = self.tied or self.rubs
         self.width = self.n * (2 if self.two else 1)
         self.first = 0
         self.reference = np.column_stack([system.model.mesh.points, np.zeros(len(system.per_node))])
@@ -116,8 +131,6 @@ class Pair:
         self.beside: tuple[Ints, Ints] | None = None
         self.held_ends = np.zeros(self.n, bool)  # fixed ends of the slave
         self.guided_ends = self.held_ends  # those that a support guides
-        #: Whether shear tractions are unknowns, in some step at least.
-        self.rough = isinstance(item, Tie) or item.most_friction > 0.0
         integrates = isinstance(item, ContactPair) and METHODS[item.method]["integrates"]
         if integrates and not self.slave.pointwise:
             ends = self.place[self.slave.nodes[:, :2]]
@@ -141,25 +154,34 @@ class Pair:
         self.conditions = self._conditions()
         self.name = item.name
 
-    def rub(self, step: int, share: float) -> None:
-        """Take the coefficient of friction of a step, at a share of its change in it."""
-        if isinstance(self.item, Tie) or not self.item.friction_steps:
-            return
-        # Tractions stay unknowns where a coefficient is zero for a time.
-        friction = max(self.item.friction_at(step, share), LEAST_FRICTION)
-        if friction != self.friction:
-            self.friction = friction
-            self.conditions = self._conditions()
+    def rub(self, step: int, share: float, pressure: Floats) -> None:
+        """Take the coefficients of friction of a step, at a share of its change in it.
+
+        They are those at the present slip rates and the given pressures, shape (n,).
+        """
+        if isinstance(self.item, ContactPair) and self.rubs:
+            found = self.item.friction_at(step, share, self.rate, np.maximum(pressure, 0.0))
+            # Tractions stay unknowns where a coefficient is zero for a time.
+            self.friction = np.maximum(found, LEAST_FRICTION)
 
     def _conditions(self) -> _core.ContactLaw:
         """The law of the constraints: what gaps, slips and tractions owe each other."""
         if self.tied:
             return _core.ContactLaw.joined(noise=self.noise)
         kind, pressure, overclosure = ("hard", [], []) if self.law is None else self.law.constants
-        along = ("coulomb", [self.friction, self.shear_limit])
-        if not self.friction:
-            along = ("frictionless", [])
+        along = ("coulomb", [self.shear_limit]) if self.rubs else ("frictionless", [])
         return _core.ContactLaw(kind, pressure, overclosure, *along, noise=self.noise)
+
+    def slide(self, terms: Terms, dt: float) -> None:
+        """Take the slip rates of a trial state, an increment of time after the committed one.
+
+        Where nothing has moved yet, those of the increment before stay.
+        """
+        if self.rubs and dt > 0.0 and terms.slip.any():
+            seen = terms.area > COVERED * self.full
+            self.rate = np.where(seen, np.abs(terms.slip), 0.0) / np.where(
+                seen, terms.area * dt, 1.0
+            )
 
     # -- evaluation --------------------------------------------------------------------
 
@@ -177,7 +199,7 @@ class Pair:
             return self._nothing()
         if not nlgeom:
             return self._since(self._linear(x, old))
-        before = old if self.friction else None
+        before = old if self.rubs else None
         middle = None
         if self.start is not None and x is not old and (acts or self._may_act()):
             x_middle = 0.5 * (x + old)
@@ -224,7 +246,7 @@ class Pair:
         count = np.round((constrained[self.nodes, :2] ** 2).sum(axis=1))
         self.held_ends = ends & (count == 2)
         self.guided_ends = ends & (count == 1)
-        self.core.hold(self.guided_ends.tolist(), self.rough)
+        self.core.hold(self.guided_ends.tolist(), self.two)
 
     def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
         """Constraints of slave surfaces on which none is closed at a committed state."""
@@ -397,11 +419,12 @@ class Pair:
         """
         begin = None if self.start is None or self.law is None else self.gap_of_start()
         stiffness = self.stiffness
-        if q is not None and self.friction:
+        if q is not None and self.rubs:
             by_sign = np.abs(q) / (TURNS_ROUND * self.edge)
             stiffness = np.where(self.weightless(q), by_sign, stiffness)
-        own = self.full, self.area, stiffness
-        return terms.gap, terms.slip, terms.area, *own, begin, self.adhering
+        own = self.full, self.area, stiffness, begin, self.adhering
+        friction = self.friction if self.rubs else None
+        return terms.gap, terms.slip, terms.area, *own, friction
 
     def weightless(self, q: Floats) -> Bools:
         """Constraints whose slave node has no stiffness that counts beside a shear traction."""
@@ -430,13 +453,13 @@ class Pair:
         decides.
         """
         at = self._at(terms, q)
-        if self.friction:
+        if self.rubs:
             # What begins to touch sticks: rounding alone is no slip.
             rests = (p == 0.0) & (q == 0.0) & (np.abs(terms.slip) <= self.noise * self.full)
             at = at[0], np.where(rests, 0.0, terms.slip), *at[2:]
         found: NDArray[np.int8] = self.conditions.states(at, p, q, last)
         adhering = self.adhering
-        if adhering is not None and self.friction:
+        if adhering is not None and self.rubs:
             # Under tension there is no friction, whichever way the surfaces slide.
             found[adhering & (found == CLOSED) & (p <= 0.0)] = SLIPPING
         if len(self.corners):
@@ -520,9 +543,9 @@ class Pair:
         shear = q if self.two else None
         _core.add_contact_forces(terms.constraint, dofs, gap, slip, p, shear, force, size)
 
-    def bound(self, p: Floats) -> Floats:
-        """Largest shear traction under pressures."""
-        return np.minimum(self.friction * p, self.shear_limit)
+    def bound(self, p: Floats, of: int | slice = ALL) -> Floats:
+        """Largest shear traction under pressures, of all constraints or one."""
+        return np.asarray(np.minimum(self.friction[of] * p, self.shear_limit))
 
     # -- increments --------------------------------------------------------------------
 
@@ -544,7 +567,8 @@ class Pair:
         self.frozen = False
         seen = terms.area > COVERED * self.full
         was, self.area = self.area, np.where(seen, terms.area, self.full)
-        if self.friction:
+        self.committed_rate = self.rate
+        if self.rubs:
             slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
             self.slid += np.where(q != 0.0, slip, 0.0)
             areas = np.where(states != OPEN, was, 0.0), np.where(seen, terms.area, 0.0)

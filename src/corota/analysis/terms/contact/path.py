@@ -90,7 +90,7 @@ class ContactPathEquations(ContactEquations):
     @property
     def not_conservative(self) -> str:
         """Why pivots do not show stability."""
-        return SLIPS if any(p.friction for p in self.term.pairs) else NOT_CONSERVATIVE
+        return SLIPS if any(p.rubs for p in self.term.pairs) else NOT_CONSERVATIVE
 
     def restart(self, loose: bool = False, like: Evaluation | None = None) -> None:
         """Begin an attempt with the states of the last commit, or of another evaluation."""
@@ -316,7 +316,7 @@ class EventPath:
         path = self.path
         pair = path.term.pairs[k]
         slides = path.gap_rates(self.at, self.tangent.u[: path.n])[k][1][i]
-        if pair.friction and self.states[k][i] == OPEN and slides != 0.0:
+        if pair.rubs and self.states[k][i] == OPEN and slides != 0.0:
             # A constraint that closes while sliding continues to slip, if possible.
             state, self.slip_directions[k, i] = SLIPPING, -float(np.sign(slides))
         elif state == SLIPPING:
@@ -366,7 +366,7 @@ class EventPath:
         if state == SLIPPING:
             return float(-slip_direction * dslip[i])
         # A constraint that sticks again unloads.
-        return float(path.term.pairs[k].friction * dp[i] - slip_direction * dq[i])
+        return float(path.term.pairs[k].friction[i] * dp[i] - slip_direction * dq[i])
 
     def first(self, latest: tuple[int, int] | None) -> Event | None:
         """The next change along the direction; of several at once, that of the latest first."""
@@ -386,7 +386,7 @@ class EventPath:
                 (_reach(self.gaps[k], -dgap, seen & (state == OPEN)), CLOSED),
                 (_reach(p, -dp, state != OPEN), OPEN),
             ]
-            if pair.friction:
+            if pair.rubs:
                 mu, sticks = pair.friction, state == CLOSED
                 for sign in (1.0, -1.0):
                     margin = _reach(mu * p - sign * q, sign * dq - mu * dp, sticks)

@@ -152,7 +152,7 @@ class Pivoting:
             small = 1e-9 * max(float(np.abs(p1 * terms.area).max(initial=0.0)), _small(problem))
             bad = (states[k] == OPEN) & (gap * pair.stiffness < -small)
             bad |= (states[k] != OPEN) & (p1 * terms.area < -small)
-            if pair.friction:
+            if pair.rubs:
                 q1 = q + z[n + pair.first + pair.n : n + pair.first + pair.width]
                 over = (np.abs(q1) - pair.friction * np.maximum(p1, 0.0)) * terms.area > small
                 bad |= (states[k] == CLOSED) & over
@@ -169,11 +169,11 @@ class Pivoting:
         """Solution from one basis."""
         problem, n = self.problem, self.problem.n
         slip_directions = [
-            np.where(q > 0.0, 1.0, -1.0) if pair.friction else np.ones(pair.n)
+            np.where(q > 0.0, 1.0, -1.0) if pair.rubs else np.ones(pair.n)
             for pair, _, (p, q) in self.pairs
         ]
         for k, (pair, terms, (_, q)) in enumerate(self.pairs):
-            if pair.friction:
+            if pair.rubs:
                 # Sticking constraints would slip against their trial traction.
                 own = pair.slip_direction(terms, q)
                 slip_directions[k] = np.where(base[k] == SLIPPING, slip_directions[k], own)
@@ -265,7 +265,6 @@ class Pivoting:
         at = 1
         for c, (pressure, gap, slip, shear) in zip(chosen, values, strict=True):
             pair = self.pairs[c.k][0]
-            mu = pair.friction
             for j, i in enumerate(c.rows.tolist()):
                 state, slip_direction = base[c.k][i], slip_directions[c.k][i]
                 first, second = at + 2 * j, at + 2 * j + 1
@@ -277,8 +276,9 @@ class Pivoting:
                     blocks.append(pressure[j])
                     kinds.append((c.k, i, "pressure"))
                     inputs.append((first, 1.0 / c.gap[j]))
-                if not mu:
+                if not pair.rubs:
                     continue
+                mu = pair.friction[i]
                 if state == CLOSED:
                     # The slip is the difference of two; each goes with one side of the bound.
                     blocks += [mu * pressure[j] + shear[j], mu * pressure[j] - shear[j]]
@@ -362,20 +362,20 @@ class Pivoting:
                 state = out[c.k][i]
                 if state == OPEN:
                     traction[pair.first + i] = -p[i]
-                if not pair.friction:
+                if not pair.rubs:
                     continue
                 at = pair.first + pair.n + i
                 p1 = p[i] + traction[pair.first + i]
                 if state == OPEN:
                     traction[at] = -q[i]
                 elif state == SLIPPING:
-                    traction[at] = pair.friction * slip_direction[c.k][i] * p1 - q[i]
+                    traction[at] = pair.friction[i] * slip_direction[c.k][i] * p1 - q[i]
                 elif base[c.k][i] != CLOSED:
                     s = slip_directions[c.k][i]
-                    traction[at] = s * (pair.friction * p1 - slack[c.k, i]) - q[i]
+                    traction[at] = s * (pair.friction[i] * p1 - slack[c.k, i]) - q[i]
         for k, (pair, _, (p, q)) in enumerate(self.pairs):
             # Slipping tractions of constraints that were not chosen follow their pressure.
-            if not pair.friction:
+            if not pair.rubs:
                 continue
             mine = np.ones(pair.n, bool)
             for c in chosen:
@@ -383,7 +383,9 @@ class Pivoting:
                     mine[c.rows] = False
             for i in np.flatnonzero(mine & (base[k] != CLOSED)).tolist():
                 p1 = p[i] + traction[pair.first + i]
-                follow = slip_directions[k][i] * pair.bound(p1) if base[k][i] == SLIPPING else 0.0
+                follow = (
+                    slip_directions[k][i] * pair.bound(p1, i) if base[k][i] == SLIPPING else 0.0
+                )
                 traction[pair.first + pair.n + i] = follow - q[i]
         return out, slip_direction
 

@@ -340,7 +340,7 @@ class ContactProblem:
             new = [s.copy() for s in states]
             slip_directions = dict(self.slip_directions)
             for s, (pair, _, (p, q)) in zip(new, self.pairs(at.contact_state), strict=True):
-                if not pair.friction:
+                if not pair.rubs:
                     continue
                 p1 = p + found[1][pair.first : pair.first + pair.n, 0]
                 q1 = q + found[1][pair.first + pair.n : pair.first + pair.width, 0]
@@ -383,10 +383,7 @@ class ContactProblem:
             np.abs(self.system.by_node(right_sides.constrained[:, 0])[:, :2]).max()
         )
         for pair in self.term.pairs:
-            if (
-                pair.friction
-                and np.abs(moved[pair.slave.node_list]).max() > pair.reach + constrained
-            ):
+            if pair.rubs and np.abs(moved[pair.slave.node_list]).max() > pair.reach + constrained:
                 return True
         return False
 

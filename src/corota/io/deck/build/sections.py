@@ -31,9 +31,11 @@ from corota.model.local_strain import dialect_strain
 from corota.model.sections import Section
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import SectionDraft
-    from corota.mesh.data import Ints
+    from corota.mesh.data import Floats, Ints
     from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
     from corota.model.sections import Plane
@@ -44,8 +46,34 @@ STABLE = {"Q4I": "Q4S"}
 #: Cards that give beams and springs their section.
 SECTION_CARDS = {"beam": "*BEAM SECTION", "spring": "*SPRING"}
 
+by_cell = lazy("corota.io.deck.cards.distribution:by_cell")
+plane_angle = lazy("corota.io.deck.cards.distribution:plane_angle")
+read_thickness = lazy("corota.io.deck.cards.distribution:thickness")
 build_lines = lazy("corota.io.deck.cards.lines:build_lines")
 truss_section = lazy("corota.io.deck.cards.lines:truss_section")
+
+
+def _alike(
+    mine: Ints, cells: Ints, by_cells: dict[str, Floats], thickness: float | Floats, angle: float
+) -> Iterator[tuple[Ints, float | Floats, float]]:
+    """Parts of the cells `mine` with one thickness and one angle of the axes.
+
+    Parameters
+    ----------
+    mine, cells : ndarray of int, shapes (m,), (n,)
+    by_cells : dict of ndarray, shape (n,)
+        ``thickness`` [length] and ``angle`` [rad] of distributions, which add to `angle`.
+    """
+    if not by_cells:
+        yield mine, thickness, angle
+        return
+    order = np.argsort(cells)
+    at = order[np.searchsorted(cells[order], mine)]
+    turns = by_cells.get("angle", np.zeros(len(cells)))[at]
+    depths = by_cells.get("thickness", np.zeros(len(cells)))[at]
+    pairs, which = np.unique(np.column_stack([turns, depths]), axis=0, return_inverse=True)
+    for number, (turn, depth) in enumerate(pairs.tolist()):
+        yield mine[which.ravel() == number], depth or thickness, angle + turn
 
 
 class SectionBuilder:
@@ -120,8 +148,10 @@ class SectionBuilder:
     def _section(self, view: View, draft: SectionDraft, cells: Ints, material: Material) -> None:
         deck, card = self.deck, draft.card
         angle = 0.0
+        by_cells: dict[str, Floats] = {}
         if draft.orientation:
             tables = (view.scope.orientations, deck.root.orientations)
+            turned = (view.scope.axes_by_element, deck.root.axes_by_element)
             named = next((t for t in tables if key(draft.orientation) in t), None)
             if named is None:
                 names = [n for t in tables for n in t]
@@ -133,7 +163,16 @@ class SectionBuilder:
                 )
                 return
             angle = named[key(draft.orientation)]
-            if math.isnan(angle):
+            by_element = next(
+                (t[key(draft.orientation)] for t in turned if key(draft.orientation) in t), None
+            )
+            if by_element is not None:
+                origin, source, more = by_element
+                found = by_cell(deck, self.sets, view, (origin, source), cells, plane_angle)
+                if found is None:
+                    return
+                by_cells["angle"], angle = found, more
+            elif math.isnan(angle):
                 if material.oriented:
                     text = "axes that turn about a point are not part of this version"
                     deck.error(
@@ -196,6 +235,12 @@ class SectionBuilder:
             )
         full = self.sets.full_name(self.sets.elsets, view, draft.elset)
         thickness = self._thickness(draft, cells)
+        if draft.thicknesses:
+            use = card, draft.thicknesses
+            found = by_cell(deck, self.sets, view, use, cells, read_thickness)
+            if found is None:
+                return
+            by_cells["thickness"] = found
         if any(plane == "axisymmetric" for _, plane in groups) and draft.nodal:
             text = "an axisymmetric section has no thickness"
             deck.error(card, card.at("NODALTHICKNESS"), text, hint="remove NODAL THICKNESS")
@@ -205,25 +250,27 @@ class SectionBuilder:
             if element in DRILLING:
                 for block, row in ((self.mesh.cells[b], r) for b, r in self._rows(mine)):
                     self.targets.rotating[block.nodes[row]] = True
-            whole = full and len(mine) == len(cells)
-            where = self.sets.spelled(self.sets.elsets, full) if whole else mine
-            try:
-                self.model.sections.append(
-                    Section(
-                        where,
-                        element,
-                        material,
-                        cast("float", 1.0 if plane == "axisymmetric" else thickness),
-                        cast("Plane", plane),
-                        cast("LocalStrain", strain),
-                        angle,
-                        card.where,
-                        mean_dilatation=draft.mean_dilatation,
-                        beta0=draft.beta0,
+            for own, depth, turn in _alike(mine, cells, by_cells, thickness, angle):
+                whole = full and len(own) == len(cells)
+                where = self.sets.spelled(self.sets.elsets, full) if whole else own
+                try:
+                    self.model.sections.append(
+                        Section(
+                            where,
+                            element,
+                            material,
+                            cast("float", 1.0 if plane == "axisymmetric" else depth),
+                            cast("Plane", plane),
+                            cast("LocalStrain", strain),
+                            turn,
+                            card.where,
+                            mean_dilatation=draft.mean_dilatation,
+                            beta0=draft.beta0,
+                        )
                     )
-                )
-            except InputError as error:
-                deck.error(card, card.where, error.message)
+                except InputError as error:
+                    deck.error(card, card.where, error.message)
+                    return
 
     def _thickness(
         self, draft: SectionDraft, cells: Ints

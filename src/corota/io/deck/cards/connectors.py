@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.io.deck.cards.attachments import add_dashpot, damping_rows
 from corota.io.deck.cards.release import point_of
+from corota.io.deck.cards.step import open_step
+from corota.io.deck.cards.supports import RATES
 from corota.io.deck.cards.tie import PLANAR
 from corota.io.deck.deck import nearest
 from corota.io.deck.drafts import (
@@ -27,6 +30,8 @@ from corota.io.deck.drafts import (
 from corota.io.deck.elements import LINE_ELEMENTS
 from corota.io.deck.lexer import Row, key
 from corota.model.constraints import Coupling, Equation
+from corota.model.contact import gap_element
+from corota.model.loads import Fixed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -145,6 +150,62 @@ def connector_damping(deck: Deck, card: Card) -> None:
         into.damped[component] = (card, rows)
 
 
+def connector_stop(deck: Deck, card: Card) -> None:
+    """``*CONNECTOR STOP, COMPONENT=``: smallest, largest relative position."""
+    rows, into = list(card.rows()), _behavior(deck, card)
+    if into is None:
+        return
+    component = _component(deck, card)
+    if component is None:
+        return
+    if component == 6:
+        text = "stops of a rotation are not part of this version"
+        deck.error(card, card.at("COMPONENT"), text, hint="let an arm meet a *GAP")
+    elif len(rows) != 1 or not any(rows[0].fields[:2]):
+        deck.error(card, card.where, "a data line is expected: smallest, largest position")
+    else:
+        ends = [deck.real(card, rows[0], i, "the stop", math.nan) for i in (0, 1)]
+        if None not in ends:
+            low, high = (float(end or 0.0) for end in ends)
+            if low > high:
+                deck.row_error(card, rows[0], 0, f"the stops cross: {low:g} > {high:g}")
+            else:
+                into.stops[component] = (low, high)
+
+
+def connector_motion(deck: Deck, card: Card) -> None:
+    """``*CONNECTOR MOTION[, TYPE=]``: element or set, component, value."""
+    order = RATES[deck.choice(card, "TYPE", RATES, "DISPLACEMENT")]
+    _drive(deck, card, "fixed", order)
+
+
+def connector_load(deck: Deck, card: Card) -> None:
+    """``*CONNECTOR LOAD``: element or set, component, force or moment."""
+    _drive(deck, card, "force", 0)
+
+
+def _drive(deck: Deck, card: Card, kind: str, order: int) -> None:
+    if open_step(deck, card) is None:
+        return
+    if deck.choice(card, "OP", ("MOD", "NEW"), "MOD") == "NEW":
+        text = f"OP=NEW of {card.spelled} is not part of this version"
+        deck.error(card, card.at("OP"), text, hint="give the components that change")
+        return
+    for row in card.rows():
+        deck.extra_fields(card, row, 3)
+        component = deck.integer(card, row, 1, "the component")
+        value = deck.real(card, row, 2, "the value", 0.0)
+        if component is None or value is None:
+            continue
+        if component not in PLANAR:
+            text = f"expected component 1, 2 or 6 (rotation), found {component}"
+            deck.row_error(card, row, 1, text)
+            continue
+        draft = Draft(kind, card, row, row.get(0), (value,), component, card.value("AMPLITUDE"))
+        draft.order = order
+        deck.drives.append((len(deck.steps) - 1, draft))
+
+
 def _behavior(deck: Deck, card: Card) -> BehaviorDraft | None:
     if deck.behavior is None:
         text = "the card belongs under a *CONNECTOR BEHAVIOR, but there is none before it"
@@ -189,6 +250,47 @@ def prepare_connectors(deck: Deck) -> None:
             if _read(deck, draft, section):
                 _springs(deck, draft, section)
                 _pins(deck, draft, section)
+    _controls(deck)
+
+
+def _controls(deck: Deck) -> None:
+    """Give each driven component a node, whose dof 1 is the relative motion.
+
+    Motions and loads of the component become those of the node.
+    """
+    made: dict[tuple[int, int], Draft] = {}
+    scopes = [deck.root, *deck.parts.values()]
+    for step, drive in deck.drives:
+        wanted, found = key(drive.target), False
+        for draft in (d for d in deck.attached if d.type == "CONN2D2"):
+            for place, label in enumerate(draft.labels):
+                if wanted not in (key(draft.name), str(label)):
+                    continue
+                found = True
+                if draft.scope is not deck.root:
+                    text = "connectors of a part cannot be driven"
+                    deck.error(drive.card, drive.row.where, text, hint="give them in *ASSEMBLY")
+                    return
+                at = drive.row.where
+                node = made.get((label, drive.index))
+                if node is None:
+                    blocks = [block for scope in scopes for block in scope.nodes]
+                    own = 1 + max(int(b.labels.max(initial=0)) for b in blocks)
+                    lines = np.array([at.line], np.int64)
+                    new = NodeBlock(np.array([own], np.int64), blocks[0].points[:1], at.file, lines)
+                    deck.root.nodes.append(new)
+                    node = Draft("node", draft.card, drive.row, str(own), (0.0,))
+                    made[label, drive.index] = node
+                    draft.controls.append((place, drive.index, drive, node))
+                own_draft = replace(drive, target=node.target, index=0)
+                into = (
+                    deck.steps[step].supports if drive.kind == "fixed" else deck.steps[step].loads
+                )
+                into.append(own_draft)
+        if not found:
+            names = [d.name for d in deck.attached if d.type == "CONN2D2"]
+            text = f"no element or set of *ELEMENT, TYPE=CONN2D2 named {drive.target!r}"
+            deck.error(drive.card, drive.row.where, text, hint=nearest(drive.target, names))
 
 
 def _read(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> bool:
@@ -214,6 +316,9 @@ def _read(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> bool:
         if found is None:
             deck.row_error(card, section.rows[1], 0, f"no orientation named {name!r}")
             return False
+        if math.isnan(found):
+            deck.row_error(card, section.rows[1], 0, f"{name} is not rectangular")
+            return False
         section.angle = found
     if card.has("BEHAVIOR"):
         section.behavior = deck.behaviors.get(key(card.value("BEHAVIOR")))
@@ -221,20 +326,26 @@ def _read(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> bool:
             text = f"no *CONNECTOR BEHAVIOR named {card.value('BEHAVIOR')!r}"
             deck.error(card, card.at("BEHAVIOR"), text)
             return False
-        given = {*section.behavior.elastic, *section.behavior.damped}
-        if kind in ("AXIAL", "AXIAL, ALIGN", "SLOT", "TRANSLATOR"):
-            given -= {6} if "ROTATION" in words else set()
-            allowed = {1}
-        elif kind in ("JOIN", "HINGE", "ROTATION"):
-            allowed = {6}
-        else:
-            allowed = {1, 2} | ({6} if "ROTATION" in words else set())
-        wrong = sorted(given - (allowed & {*FREE[kind]}))
+        given = {*section.behavior.elastic, *section.behavior.damped, *section.behavior.stops}
+        wrong = sorted(given - _components(section.kinds))
         if wrong:
-            text = f"component {wrong[0]} of a connection {kind} has no spring and no damper"
+            text = f"component {wrong[0]} of a connection {kind} has no spring, damper or stop"
             deck.error(section.behavior.card, section.behavior.card.where, text)
             return False
     return True
+
+
+def _components(kinds: tuple[str, ...]) -> set[int]:
+    """Components of a connection that move and can have springs, dampers and drives."""
+    kind, *words = kinds
+    found = {1, 2}
+    if kind in ("AXIAL", "AXIAL, ALIGN", "SLOT", "TRANSLATOR"):
+        found = {1}
+    elif kind in ("JOIN", "HINGE", "ROTATION"):
+        found = {6}
+    elif kind == "ALIGN":
+        found = set()
+    return (found | ({6} if "ROTATION" in words else set())) & {*FREE[kind]}
 
 
 def _directions(deck: Deck, section: ConnectorDraft, component: int) -> tuple[int, bool] | None:
@@ -322,13 +433,19 @@ def connect(
         text = f"no *CONNECTOR SECTION, ELSET={draft.name} says what these elements join"
         deck.error(draft.card, draft.card.at("ELSET"), text)
         return
-    for drafts in draft.nodes:
+    for place, drafts in enumerate(draft.nodes):
         found = [find(d) for d in drafts]
         nodes = [int(n[0]) for n in found if n is not None and not isinstance(n, str)]
         if len(nodes) == len(drafts) and section.kinds:
             one = _Connector(deck, model, section, drafts[0].row.where, nodes, rotating)
-            one.join(_held(deck, model, find))
+            held = _held(deck, model, find)
+            one.join(held)
             one.damp()
+            one.stop(f"{draft.name}-{draft.labels[place]}" if draft.labels else "")
+            for at, component, drive, control in draft.controls:
+                node = find(control) if at == place else None
+                if node is not None and not isinstance(node, str):
+                    one.drive(component, drive, int(node[0]), held)
 
 
 def _held(deck: Deck, model: Model, find: Find) -> Ints:
@@ -435,20 +552,97 @@ class _Connector:
                 if self.rotating[[first, second]].all():
                     self._equation([(first, 2, 1.0), (second, 2, -1.0)])
                 continue
-            angle = self.section.angle + (0.5 * math.pi if component == 2 else 0.0)
-            normal = np.array([np.cos(angle), np.sin(angle)])
-            normal[np.abs(normal) < 1e-12] = 0.0
-            lead = int(np.argmax(np.abs(normal)))
-            terms = [(first, lead, normal[lead]), (second, lead, -normal[lead])]
-            if normal[1 - lead]:
-                terms += [
-                    (first, 1 - lead, normal[1 - lead]),
-                    (second, 1 - lead, -normal[1 - lead]),
-                ]
-            begin = self.nodes[0]
-            if self.rotating[begin] and joined != {1, 2}:
-                self._small_turn(terms, normal, begin, first)
-            self._equation(terms)
+            self._equation(self._along(component, first, second, turns=joined != {1, 2}))
+
+    def _axis(self, component: int) -> np.ndarray:
+        """Unit vector of component 1 or 2: along the line of AXIAL, else by the orientation."""
+        if self.kind.startswith("AXIAL"):
+            return np.asarray(self.line / np.hypot(*self.line))
+        angle = self.section.angle + (0.5 * math.pi if component == 2 else 0.0)
+        normal = np.array([np.cos(angle), np.sin(angle)])
+        normal[np.abs(normal) < 1e-12] = 0.0
+        return normal
+
+    def _along(
+        self, component: int, first: int, second: int, *, turns: bool
+    ) -> list[tuple[int, int, float]]:
+        """Terms of the motion of one node relative to the other, the direction may turn."""
+        normal = self._axis(component)
+        lead = int(np.argmax(np.abs(normal)))
+        terms = [(first, lead, normal[lead]), (second, lead, -normal[lead])]
+        if normal[1 - lead]:
+            terms += [
+                (first, 1 - lead, normal[1 - lead]),
+                (second, 1 - lead, -normal[1 - lead]),
+            ]
+        begin = self.nodes[0]
+        if self.rotating[begin] and turns:
+            self._small_turn(terms, normal, begin, first)
+        return terms
+
+    def drive(self, component: int, drive: Draft, control: int, held: Ints) -> None:
+        """Let dof 1 of a node be the relative motion of a component."""
+
+        def refuse(text: str, hint: str) -> None:
+            self.deck.error(drive.card, drive.row.where, text, hint=hint)
+
+        if component not in _components(self.section.kinds):
+            refuse(f"component {component} of a connection {self.kind} does not move", "")
+            return
+        if len(self.nodes) == 1:
+            refuse("the connection leads to the ground", "give *BOUNDARY or *CLOAD at its node")
+            return
+        along = self.kind.startswith("AXIAL") and component == 1
+        if along and any(step.nlgeom for step in self.deck.steps):
+            refuse(
+                "the line of a connection AXIAL turns under NLGEOM",
+                "give a truss between the nodes and heat it, or use CARTESIAN or TRANSLATOR",
+            )
+            return
+        first, second = self.nodes[:2]
+        if first in held:
+            first, second = second, first
+        if component == 6:
+            if not self.rotating[[first, second]].all():
+                refuse("a node of the connection has no rotation", "join elements with rotations")
+                return
+            terms = [(first, 2, 1.0), (second, 2, -1.0)]
+        else:
+            terms = self._along(component, first, second, turns=not along)
+        terms.append((control, 0, 1.0 if first == self.nodes[0] else -1.0))
+        self._equation(terms)
+        self.model.supports.append(Fixed(np.array([control]), 1, 0.0, "", self.where))
+
+    def stop(self, name: str) -> None:
+        """Add the gaps of its stops."""
+        behavior = self.section.behavior
+        for component, (low, high) in (behavior.stops if behavior else {}).items():
+            if len(self.nodes) == 1 or self.kind.startswith("AXIAL"):
+                text = f"stops of a connection {self.kind}"
+                text += " to the ground" if len(self.nodes) == 1 else ", whose line turns,"
+                hint = "give two nodes and CARTESIAN, SLOT or TRANSLATOR, or contact"
+                self.error(f"{text} are not part of this version", hint)
+                return
+            if self.rotating[self.nodes[0]]:
+                label = self.model.mesh.node_labels[self.nodes[0]]
+                text = f"the direction of stops turns with node {label}"
+                self.error(text, "name a node without rotation first")
+                return
+            normal = self._axis(component)
+            at = float(normal @ self.line)
+            both = (self.nodes[0], self.nodes[1])
+            for end, way, word in ((low, 1.0, "low"), (high, -1.0, "high")):
+                if math.isfinite(end):
+                    x, y = (way * normal).tolist()
+                    gap = gap_element(
+                        self.model.mesh.points,
+                        both,
+                        way * (at - end),
+                        (x, y),
+                        f"{name}-{component}-{word}",
+                        self.where,
+                    )
+                    self.model.contacts.append(gap)
 
     def _small_turn(
         self, terms: list[tuple[int, int, float]], normal: np.ndarray, begin: int, first: int
@@ -505,7 +699,10 @@ __all__ = [
     "connector_behavior",
     "connector_damping",
     "connector_elasticity",
+    "connector_load",
+    "connector_motion",
     "connector_section",
+    "connector_stop",
     "link",
     "prepare_connectors",
 ]

@@ -8,17 +8,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.errors import InputError
 from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
 from corota.io.deck.drafts import Draft, InteractionDraft, PairDraft
 from corota.io.deck.lexer import key
-from corota.model.contact import MOST_FRICTION
+from corota.model.friction import MOST_FRICTION, DecayingFriction, FrictionTable
 
 if TYPE_CHECKING:
     from corota.errors import Location
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import StepDraft, Surface
     from corota.io.deck.lexer import Card, Row
+    from corota.model.friction import Friction
 
 #: Types of contact pairs of CalculiX and Abaqus, and the discretization here.
 TYPES = {
@@ -263,7 +265,10 @@ def change_friction(deck: Deck, card: Card) -> None:
 
 
 def friction(deck: Deck, card: Card) -> None:
-    """``*FRICTION``: coefficient, stick slope; ``ROUGH``: what touches does not slide."""
+    """``*FRICTION``: coefficient, stick slope; more lines, ``EXPONENTIAL DECAY``: one that varies.
+
+    ``ROUGH``: what touches does not slide.
+    """
     if deck.step is not None:
         into, deck.changed = deck.changed, None
         if into is None:
@@ -288,8 +293,13 @@ def friction(deck: Deck, card: Card) -> None:
     if card.has("ROUGH"):
         _rub(deck, into, MOST_FRICTION)
         return
-    if len(rows) != 1:
-        deck.error(card, card.where, f"one data line is expected, found {len(rows)}")
+    if card.has("EXPONENTIALDECAY") or len(rows) > 1:
+        found = _varying(deck, card, rows)
+        if found is not None:
+            _rub(deck, into, found)
+        return
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: the friction coefficient")
         return
     row = rows[0]
     mu = deck.real(card, row, 0, "the friction coefficient")
@@ -303,7 +313,35 @@ def friction(deck: Deck, card: Card) -> None:
         deck.note(f"{row.at(1)}: {card.spelled}: no stick slope is needed: sticking is exact")
 
 
-def _rub(deck: Deck, into: InteractionDraft, mu: float) -> None:
+def _varying(deck: Deck, card: Card, rows: list[Row]) -> Friction | None:
+    """Static and kinetic coefficient and decay, or coefficients by slip rate and pressure."""
+    decays = card.has("EXPONENTIALDECAY")
+    if decays and len(rows) != 1:
+        text = f"one data line is expected: static, kinetic coefficient, decay; found {len(rows)}"
+        deck.error(card, card.where, text)
+        return None
+    names = ("the static coefficient", "the kinetic coefficient", "the decay coefficient")
+    if not decays:
+        names = ("the friction coefficient", "the slip rate", "the contact pressure")
+    given = []
+    for row in rows:
+        deck.extra_fields(card, row, 3 if decays else 4)
+        defaults = (None, None, None) if decays else (None, 0.0, 0.0)
+        values = [deck.real(card, row, i, names[i], defaults[i]) for i in range(3)]
+        if None in values:
+            return None
+        given.append(tuple(float(v or 0.0) for v in values))
+        if not decays and row.get(3) != rows[0].get(3):
+            deck.row_error(card, row, 3, "friction that depends on the temperature is not read")
+            return None
+    try:
+        return DecayingFriction(*given[0]) if decays else FrictionTable(given)  # type: ignore[arg-type]
+    except InputError as error:
+        deck.error(card, rows[0].where, error.message)
+        return None
+
+
+def _rub(deck: Deck, into: InteractionDraft, mu: Friction) -> None:
     """Set the coefficient of the model, or that from the open step on."""
     if deck.step is None:
         into.friction = mu

@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from corota.io.deck import numerals
+from corota.io.deck.cards.distribution import plane_angle
 from corota.io.deck.drafts import Draft, MaterialDraft, NonstructuralDraft, SectionDraft
 from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
@@ -198,6 +200,7 @@ def solid_section(deck: Deck, card: Card) -> None:
         for row in rows[1:]:
             deck.row_error(card, row, 0, "one data line is expected, the thickness")
     given = bool(rows and rows[0].get(0)) or card.has("NODALTHICKNESS")
+    given = given or card.has("SHELLTHICKNESS")
     if thickness is not None and thickness <= 0.0:
         deck.row_error(card, rows[0], 0, f"the thickness must be > 0, not {thickness:g}")
         thickness = None
@@ -215,6 +218,7 @@ def solid_section(deck: Deck, card: Card) -> None:
                 beta0,
                 card.has("NODALTHICKNESS"),
                 given,
+                card.value("SHELLTHICKNESS"),
             )
         )
 
@@ -254,7 +258,8 @@ def nonstructural_mass(deck: Deck, card: Card) -> None:
 
 def shell_section(deck: Deck, card: Card) -> None:
     """``*SHELL SECTION``, ``*MEMBRANE SECTION``: a planar part; the thickness is required."""
-    if not any(row.get(0) for row in card.rows()) and not card.has("NODALTHICKNESS"):
+    by_set = card.has("NODALTHICKNESS") or card.has("SHELLTHICKNESS")
+    if not any(row.get(0) for row in card.rows()) and not by_set:
         deck.error(card, card.where, "a data line is missing: the thickness")
         return
     deck.note(f"{card.where}: {card.spelled} is read as a plane-stress section")
@@ -262,7 +267,7 @@ def shell_section(deck: Deck, card: Card) -> None:
 
 
 def orientation(deck: Deck, card: Card) -> None:
-    """``*ORIENTATION, NAME=``: a point on the first axis and one in the plane."""
+    """``*ORIENTATION, NAME=``: points on the first axis and in the plane, or a distribution."""
     name = deck.required(card, "NAME")
     systems = ("RECTANGULAR", "CYLINDRICAL", "SPHERICAL", "ZRECTANGULAR", "USER")
     if deck.choice(card, "SYSTEM", systems, "RECTANGULAR") != "RECTANGULAR":
@@ -274,29 +279,11 @@ def orientation(deck: Deck, card: Card) -> None:
     if not rows:
         deck.error(card, card.where, "a data line is missing: ax, ay, az, bx, by, bz")
         return
-    deck.extra_fields(card, rows[0], 6)
-    values = [deck.real(card, rows[0], i, text, 0.0) for i, text in enumerate(("ax", "ay", "az"))]
-    other = [
-        deck.real(card, rows[0], i + 3, text, 0.0) for i, text in enumerate(("bx", "by", "bz"))
-    ]
-    if None in values or None in other:
+    source = rows[0].get(0)
+    named = source and not rows[0].get(1) and not numerals.is_number(source)
+    angle = 0.0 if named else plane_angle(deck, card, rows[0])
+    if angle is None:
         return
-    a = [float(v or 0.0) for v in values]
-    b = [float(v or 0.0) for v in other]
-    scale = math.hypot(a[0], a[1])
-    if scale == 0.0 or abs(a[2]) > 1e-9 * scale or abs(b[2]) > 1e-9 * math.hypot(*b):
-        deck.row_error(card, rows[0], 0, "both points must lie in the plane z = 0, off the origin")
-        return
-    cross = a[0] * b[1] - a[1] * b[0]
-    if abs(cross) <= 1e-12 * scale * math.hypot(b[0], b[1]):
-        deck.row_error(card, rows[0], 3, "the two points and the origin lie on one line")
-        return
-    if cross < 0.0:
-        deck.row_error(
-            card, rows[0], 3, "the third axis would point to -z; give b left of the line to a"
-        )
-        return
-    angle = math.atan2(a[1], a[0])
     if len(rows) > 1:
         axis = deck.integer(card, rows[1], 0, "the axis", 3)
         turn = deck.real(card, rows[1], 1, "the angle", 0.0)
@@ -309,5 +296,8 @@ def orientation(deck: Deck, card: Card) -> None:
     for row in rows[2:]:
         deck.row_error(card, row, 0, "at most two data lines are expected")
         return
-    if name:
+    if name and named:
+        deck.scope.axes_by_element[key(name)] = (card, source, angle)
+        deck.scope.orientations[key(name)] = math.nan
+    elif name:
         deck.scope.orientations[key(name)] = angle

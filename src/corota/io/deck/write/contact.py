@@ -12,6 +12,7 @@ import numpy as np
 from corota.errors import UnsupportedError
 from corota.mesh.parts import cells_of
 from corota.model.contact import RigidCurve, edges_or_nodes, is_gap
+from corota.model.friction import DecayingFriction, FrictionTable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from corota.io.deck.write.text import Writer
     from corota.mesh.data import Floats, Ints
     from corota.model.contact import ContactPair, PressureLaw
+    from corota.model.friction import Friction
     from corota.model.model import Model
 
 #: Arcs are cut into pieces of at most this angle [rad]; a deck's are less than half a turn.
@@ -56,7 +58,7 @@ def contact_cards(writer: Writer) -> Iterator[str]:
             yield "*SURFACE BEHAVIOR, NO SEPARATION\n"
         if pair.most_friction:
             limit = "" if pair.shear_limit is None else f", TAUMAX={float(pair.shear_limit)!r}"
-            yield f"*FRICTION{limit}\n{float(pair.friction)!r}\n"
+            yield _friction(pair.friction, limit)
         _check_heights(model, pair)
         if pair.images is not None:
             raise UnsupportedError(
@@ -98,7 +100,7 @@ def step_cards(writer: Writer, number: int) -> Iterator[str]:
         if number in pair.friction_steps:
             ramp = ", RAMP" if pair.friction_ramps else ""
             yield f"*CHANGE FRICTION, INTERACTION=INTERACTION{place}{ramp}\n"
-            yield f"*FRICTION\n{float(pair.friction_steps[number])!r}\n"
+            yield _friction(pair.friction_steps[number])
 
 
 def surfaces(writer: Writer, pair: ContactPair) -> tuple[str, str]:
@@ -149,6 +151,14 @@ def _behavior(law: PressureLaw) -> str:
         pairs = zip(law.pressure.tolist(), law.overclosure.tolist(), strict=True)
         rows = "".join(f"{p!r}, {w!r}\n" for p, w in pairs)
     return f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE={law.kind.upper()}\n{rows}"
+
+
+def _friction(friction: Friction, more: str = "") -> str:
+    if isinstance(friction, DecayingFriction):
+        numbers = (friction.static, friction.kinetic, friction.decay)
+        return f"*FRICTION, EXPONENTIAL DECAY{more}\n{', '.join(map(repr, numbers))}\n"
+    rows = friction.rows if isinstance(friction, FrictionTable) else [(float(friction),)]
+    return f"*FRICTION{more}\n" + "".join(f"{', '.join(map(repr, row))}\n" for row in rows)
 
 
 def _profile(model: Model, curve: RigidCurve, name: str) -> str:
