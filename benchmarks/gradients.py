@@ -552,7 +552,8 @@ def cost(kind: str, size: tuple[int, int], threads: int) -> str:
     forward = time.perf_counter() - begin
     used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     begin = time.perf_counter()
-    run = Run(results, [measure])
+    fields = [each for each in wrt if isinstance(each, gradients.parameters.Field)]
+    run = Run(results, [measure], fields=fields)
     for parameter in wrt:
         run.by(parameter)
     back = time.perf_counter() - begin

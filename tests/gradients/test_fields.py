@@ -101,3 +101,20 @@ def test_measures_combine_and_take_other_frames() -> None:
     quotient = 2.0 * (parts[0] / u[1] - parts[1] * u[-1] / u[1] ** 2)
     assert parts[2] == pytest.approx(quotient, rel=1e-12)
     assert parts[3] == pytest.approx(2.0 * u[-1] * parts[0], rel=1e-12)
+
+
+def test_fields_on_the_way_back_equal_those_of_another_walk() -> None:
+    """Two steps, two measures, one of them in the middle of the path."""
+    model = plate("Q4I", FLOWS)
+    back = ct.Static(increments=2, fixed_increments=True, tolerance=1e-13)
+    back.force(model.mesh.node_sets["right"], y=0.2)
+    model.steps.append(back)
+    results = ct.solve(model, threads=1)
+    measures = [*TIP, gradients.Displacement("right", "x", frame=2)]
+    fields = [gradients.Positions(), gradients.Thickness("element")]
+    back_way = gradients.runs.Run(results, measures, fields=fields)
+    walked = gradients.runs.Run(results, measures)
+    for each in fields:
+        expected = walked.by(each)
+        size = np.abs(expected).max()
+        np.testing.assert_allclose(back_way.by(each), expected, rtol=0.0, atol=1e-12 * size)

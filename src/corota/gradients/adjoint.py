@@ -18,7 +18,7 @@ multiplier makes the state fixed in what the path prescribes.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -88,11 +88,64 @@ class Adjoint:
         return np.concatenate([self.forces, zero], axis=1)
 
 
+class Field(Protocol):
+    """Many numbers of the elements: see :class:`corota.gradients.parameters.Field`."""
+
+    def wanted(self) -> str:
+        """Derivative of the core that it takes."""
+        ...
+
+    def gather(self, trajectory: Trajectory, found: dict[str, Any]) -> Floats:
+        """Gradient from derivatives of the elements."""
+        ...
+
+    def require(self, trajectory: Trajectory, adjoint: Adjoint) -> None:
+        """Refuse what depends on it beside the elements."""
+        ...
+
+
+@dataclass
+class FieldSums:
+    """Gradients of measures by fields, summed over the increments.
+
+    Parameters
+    ----------
+    fields : sequence of Field
+    """
+
+    fields: Sequence[Field]
+    #: By field, shape (n_measures, ...); empty before the first increment.
+    rows: list[Any] = field(default_factory=list)
+
+    def add(
+        self, trajectory: Trajectory, adjoint: Adjoint, found: Sequence[dict[str, Any]]
+    ) -> None:
+        """Add derivatives of the elements at an increment, one for each measure.
+
+        Raises
+        ------
+        UnsupportedError
+            If more than the elements depends on a field.
+        """
+        own = []
+        for each in self.fields:
+            each.require(trajectory, adjoint)
+            for _, leaf in adjoint.measures:
+                if not leaf.state_only:
+                    raise UnsupportedError(
+                        f"{leaf!r} depends on {each.wanted()} itself: take gradients.Attribute or "
+                        "Shape"
+                    )
+            own.append(np.stack([each.gather(trajectory, one) for one in found]))
+        self.rows = [a + b for a, b in zip(self.rows, own, strict=True)] if self.rows else own
+
+
 def adjoints(
     trajectory: Trajectory,
     increments: Sequence[Increment],
     leaves: Sequence[Measure],
     wanted: bool = True,
+    sums: FieldSums | None = None,
 ) -> tuple[list[float], list[Adjoint]]:
     """Values of simple measures, and their adjoint states in the order of the increments.
 
@@ -105,6 +158,9 @@ def adjoints(
     leaves : sequence of Measure
     wanted : bool
         Without it the values alone.
+    sums : FieldSums, optional
+        Takes derivatives of the elements on the way back, where materials have histories and
+        nothing moves.
 
     Raises
     ------
@@ -160,13 +216,14 @@ def adjoints(
     later = None
     if moves:
         later = Rates(*np.zeros((4, trajectory.system.n_dofs, len(leaves))))
+        sums = None
     for k in range(len(increments) - 1, -1, -1):
         if increments[k].frame > final:
             continue
         if increments[k].step != step:
             step = increments[k].step
             trajectory = trajectory.at_step(increments, step)
-        reverse.append(_backward(trajectory, increments[k], at_frame, y, len(leaves), later))
+        reverse.append(_backward(trajectory, increments[k], at_frame, y, len(leaves), later, sums))
     return values, reverse[::-1]
 
 
@@ -303,6 +360,7 @@ def _backward(
     y: list[list[Floats]],
     count: int,
     later: Rates | None,
+    sums: FieldSums | None,
 ) -> Adjoint:
     """Adjoint states at an increment; `y` and `later` are taken to the increment before."""
     system = trajectory.system
@@ -344,12 +402,17 @@ def _backward(
         vars(later).update(vars(motion.before(later, z, increment.dt)))
     if not trajectory.remembers:
         return adjoint
+    fields = sums.fields if sums is not None else ()
+    inputs, derivatives = ["state", *(each.wanted() for each in fields)], []
     for column in range(count):
         force = np.ascontiguousarray(system.in_space(z[:, column]))
-        if not force.any() and not y[column] and not own:
+        if not (force.any() or y[column] or own or fields):
             continue
-        found = core.differentiate(here, system.nlgeom, force, y[column], ["state"])
+        found = core.differentiate(here, system.nlgeom, force, y[column], inputs)
         y[column] = [np.array(each) for each in found["state"]]
+        derivatives.append(found)
+    if sums is not None:
+        sums.add(trajectory, adjoint, derivatives)
     for column, leaf in own:
         direct = leaf.by_histories(point)
         if direct is not None:
@@ -519,4 +582,4 @@ def factor_rate(point: Point) -> Floats:
     return slope
 
 
-__all__ = ["Adjoint", "adjoints", "control_row", "controlled", "factor_rate"]
+__all__ = ["Adjoint", "FieldSums", "adjoints", "control_row", "controlled", "factor_rate"]

@@ -11,7 +11,7 @@ import numpy as np
 
 from corota.analysis.run import keep_nlgeom, solve
 from corota.errors import InputError, UnsupportedError
-from corota.gradients.adjoint import adjoints, control_row
+from corota.gradients.adjoint import FieldSums, adjoints, control_row
 from corota.gradients.differences import derivative, step_between_kinks
 from corota.gradients.measures import Measure, SpecialMeasure, combine, leaves
 from corota.gradients.parameters import Field, Parameter
@@ -99,7 +99,8 @@ def gradient(
     wanted = [wrt] if isinstance(wrt, (Parameter, Field)) else list(wrt)
     require_side(one_sided)
     if one_sided is None:
-        run = Run(results, measures, memory=memory)
+        fields = [each for each in wanted if isinstance(each, Field)]
+        run = Run(results, measures, memory=memory, fields=fields)
         found = [run.by(parameter) for parameter in wanted]
     else:
         found = [_beside(results, measures, each, one_sided, memory) for each in wanted]
@@ -153,6 +154,8 @@ class Run:
         Whether there will be gradients; else the values alone.
     memory : float, optional
         As of :func:`gradient`.
+    fields : sequence of Field, optional
+        Those that :meth:`by` will get: materials with history give these on the way back.
     """
 
     def __init__(
@@ -161,6 +164,7 @@ class Run:
         measures: Sequence[Measure],
         adjoint: bool = True,
         memory: float | None = None,
+        fields: Sequence[Field] = (),
     ) -> None:
         self.measures = list(measures)
         for each in self.measures:
@@ -180,8 +184,9 @@ class Run:
         self.trajectory = Trajectory(
             self.model, self.steps, self.threads, self.store, kinks=not adjoint
         )
+        self.sums = FieldSums(list(fields))
         self.leaf_values, self.adjoints = adjoints(
-            self.trajectory, self.increments, self.leaves, adjoint
+            self.trajectory, self.increments, self.leaves, adjoint, self.sums
         )
         self.values = np.array([self._combined(None, m)[0] for m in self.measures])
 
@@ -302,30 +307,24 @@ class Run:
         return sorted(needed.values(), key=lambda i: (i.frame, i is ends.get(i.step))), own
 
     def _by_field(self, parameter: Field) -> Floats:
-        system = self.trajectory.system
-        rows: Any = 0.0
-        what = parameter.wanted()
+        for known, rows in zip(self.sums.fields, self.sums.rows, strict=False):
+            if known is parameter:
+                return self.combined(rows)
+        sums, inputs = FieldSums([parameter]), [parameter.wanted()]
         trajectory = Trajectory(self.model, self.steps, self.threads)
         needed, own = self._needed()
         for point in trajectory.walk(needed, given=True):
             adjoint = own.get(id(point.increment))
             if adjoint is None:
                 continue
-            parameter.require(trajectory, adjoint)
-            for _, leaf in adjoint.measures:
-                if not leaf.state_only:
-                    raise UnsupportedError(
-                        f"{leaf!r} depends on {what} itself: take gradients.Attribute or Shape"
-                    )
             system = trajectory.system
             here, found = system.in_space(point.u), []
             for column in range(len(self.leaves)):
                 force = np.ascontiguousarray(system.in_space(adjoint.forces[:, column]))
                 weights = list(adjoint.histories[column]) if adjoint.histories else []
-                each = system.core.differentiate(here, system.nlgeom, force, weights, [what])
-                found.append(parameter.gather(trajectory, each))
-            rows = rows + np.stack(found)
-        return self.combined(rows)
+                found.append(system.core.differentiate(here, system.nlgeom, force, weights, inputs))
+            sums.add(trajectory, adjoint, found)
+        return self.combined(sums.rows[0])
 
 
 def _target(step: Step) -> tuple[list[Any], float]:
