@@ -98,3 +98,24 @@ def test_allowable_of_a_stage_takes_the_amplitude() -> None:
     largest = results.history("MISESA", combine="max", at="nodes").values
     harmonic = ~np.isnan(largest)
     assert used[harmonic] == pytest.approx(largest[harmonic] / 100.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("direct", [True, False])
+def test_spring_whose_response_vanishes_or_is_late(direct: bool) -> None:
+    """``F / (k - m w^2 + i c w)``, also at rest, in resonance and without a stress of solids."""
+    k, mass, c, force = 100.0, 1.0, 2.0, 5.0
+    model = ct.Model(ct.mesh.line([(0.0, 0.0), (1.0, 0.0)], n=1))
+    model.spring("all", k)
+    model.point_mass("end", mass)
+    model.dashpot(1, x=c)
+    model.fix("start")
+    model.fix("end", x=None, y=0.0)
+    resonance = np.sqrt(k / mass) / (2.0 * np.pi)
+    step = ct.SteadyState(lowest=resonance, highest=3.0, points=3, direct=direct, bias=1.0)
+    step.force("end", x=force)
+    results = ct.solve(model, [step] if direct else [ct.Frequency(modes=1), step], threads=1)
+    steady = [i for i, frame in enumerate(results.frames) if frame.scalars.get("frequency")]
+    w = 2.0 * np.pi * results.history("frequency")[steady]
+    exact = force / (k - mass * w**2 + 1j * c * w)
+    np.testing.assert_allclose(results.history("UA1", at="end")[steady], np.abs(exact), rtol=1e-8)
+    np.testing.assert_allclose(results.history("UP1", at="end")[steady], np.angle(exact), rtol=1e-8)

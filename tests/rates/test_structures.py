@@ -232,3 +232,21 @@ def test_a_checkpoint_goes_on_with_its_time() -> None:
     again = ct.solve(bar(law, pull=2e-3), steps, threads=1, start=takes.found[4])
     a, b = (r.frames[-1].fields[0].values["S"] for r in (whole, again))
     np.testing.assert_array_equal(b, a)
+
+
+@pytest.mark.parametrize(("increments", "warns"), [(0, True), (10, True), (1000, False)])
+def test_relaxation_in_long_increments_is_noted(increments: int, warns: bool) -> None:
+    """``s^(1-n) = s0^(1-n) + (n-1) E A t``: a note where the error is above a few percent."""
+    n, young, factor, period = 4.0, 1000.0, 1e-6, 100.0
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, nx=1, ny=1))
+    model.section("all", element="Q4", material=ct.Mises(E=young, rate=ct.Norton(factor, n)))
+    model.fix("left", x=0.0, y=None)
+    model.fix([0], x=None, y=0.0)
+    model.fix("right", x=0.04, y=None)
+    sizes = {"increments": increments} if increments else {}
+    steps = [ct.Static(nlgeom=False), ct.Visco(nlgeom=False, period=period, **sizes)]
+    results = ct.solve(model, steps, threads=1)
+    exact = (10.0 ** (1.0 - n) + (n - 1.0) * young * factor * period) ** (1.0 / (1.0 - n))
+    error = abs(results.history("RF1", at="right")[-1] / exact - 1.0)
+    assert (error > 0.05) == warns
+    assert any("creep_tolerance" in note for note in results.notes) == warns

@@ -49,7 +49,8 @@ class LinearFields:
         turned = float(np.abs(change[~system.counted]).max(initial=0.0))
         largest = max(moved, turned * system.cell_size)
         if largest == 0.0:
-            return self.base, dict(self.sums)
+            # Copies, as the caller adds values of its own.
+            return [replace(f, values=dict(f.values)) for f in self.base], dict(self.sums)
         h = min(1.0, SIZE * system.length / largest)
         ahead, sums_ahead = self._recover(self.u + h * change)
         behind, sums_behind = self._recover(self.u - h * change)

@@ -111,6 +111,8 @@ class StaticStepper(NewtonStepper):
         self.grown = 0.0
         #: Error of the creep strain in the last attempt, and the largest that is allowed.
         self.erred, self.creep_tolerance = 0.0, getattr(step, "creep_tolerance", 0.0)
+        #: The largest error of the increments so far.
+        self.creep_error = 0.0
         self.path_took_over = False
         #: Step times between which the last attempt lost stability.
         self.passed: tuple[float, float] | None = None
@@ -131,11 +133,13 @@ class StaticStepper(NewtonStepper):
         """Take the state of a checkpoint."""
         loop = self.state.resume(self.kind, control=self.control)
         self.rates, self.moved = (loop["first"], loop["rate"]), loop["moved"]
+        self.creep_error = loop["creep error"]
 
     def memory(self) -> dict[str, object]:
         """What a checkpoint holds beside the committed state."""
         first, rate = self.rates
-        return {"control": self.control, "first": first, "rate": rate, "moved": self.moved}
+        memory = {"control": self.control, "first": first, "rate": rate, "moved": self.moved}
+        return memory | {"creep error": self.creep_error}
 
     # -- attempts ----------------------------------------------------------------------
 
@@ -175,9 +179,9 @@ class StaticStepper(NewtonStepper):
                 again.iterations += outcome.iterations
                 outcome, contact = again, its_contact
         self.grown = self.erred = 0.0
-        if outcome.converged and not outcome.reason and self.creep_tolerance:
+        if outcome.converged and not outcome.reason and step.lasting:
             self.erred = system.elements.creep_error()
-            if self.erred > self.creep_tolerance:
+            if self.erred > self.creep_tolerance > 0.0:
                 outcome.reason = (
                     f"the creep strain of the increment has an error of {self.erred:.3g}, "
                     f"{self.creep_tolerance:g} is allowed"
@@ -384,6 +388,9 @@ class StaticStepper(NewtonStepper):
         control.accept(attempt.target, outcome.iterations)
         if self.grown > 0.0 and not self.step.fixed_increments:
             control.size = min(control.size, dt * self.step.plastic_increment / self.grown)
+        self.creep_error = max(self.creep_error, self.erred)
+        if self.creep_error and self.finished:
+            state.notes += self.creep_notes()
         if self.creep_tolerance and not self.step.fixed_increments:
             share = self.creep_tolerance / max(self.erred, 1e-300)
             # The error grows with the square of the increment.
@@ -400,6 +407,20 @@ class StaticStepper(NewtonStepper):
             scalars["negative pivots"] = float(outcome.negative)
             scalars["stable"] = float(outcome.negative == 0)
         return Accepted(control.number, attempt.target / self.step.period, scalars)
+
+    def creep_notes(self) -> list[str]:
+        """Note on increments in which the rate of creep changes more than strain allows."""
+        fields, _ = self.system.recover(self.state.u)
+        strains = (np.abs(block.values["E"]).max(initial=0.0) for block in fields)
+        strain = self.system.communicator.greatest(float(max(strains, default=0.0)))
+        if self.creep_error <= strain:
+            return []
+        return [
+            f"creep by the stress at the start of an increment of step {self.loop.number} differs "
+            f"from that of the increment by {self.creep_error:.2g}, with strains of {strain:.2g}: "
+            "stress that relaxes is wrong by several percent or more; take smaller increments, or "
+            f"creep_tolerance={0.003 * strain:.1g} (CETOL)"
+        ]
 
     # -- where load control ends -------------------------------------------------------
 
