@@ -56,7 +56,35 @@ def flight(scheme):
     return model
 
 
+def thinned():
+    """A beam that loses two elements in the second step, and gets one back in the third."""
+    model = beam([ct.Static(nlgeom=True, increments=2) for _ in range(3)], element="Q4D", load=-0.1)
+    model.mesh.cell_sets |= {"gone": np.array([4, 5]), "back": np.array([5])}
+    model.steps[1].remove_elements("gone")
+    model.fix([5, 16], y=0.0)
+    model.steps[2].add_elements("back")
+    return model
+
+
+def rubbing():
+    """A block whose friction falls with its speed."""
+    model = ct.Model(ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1), name="block")
+    model.section("all", element="Q4", material=ELASTIC)
+    model.contact(
+        "bottom",
+        ct.RigidCurve.line((-9.0, 0.0), (9.0, 0.0)),
+        friction=ct.DecayingFriction(0.5, 0.2, 3.0),
+        name="floor",
+    )
+    model.gravity(y=-10.0)
+    model.velocity(x=1.0)
+    model.steps = [ct.Dynamic(period=0.3, increments=8)]
+    return model
+
+
 QUICK = {
+    "elements that leave and come back": thinned,
+    "friction that falls": rubbing,
     "static": lambda: beam([ct.Static(increments=4)]),
     "static with cut-backs": lambda: beam([ct.Static(increments=1, max_iterations=4)], load=-9.0),
     "two steps": lambda: beam([ct.Static(increments=2), ct.Static(increments=3, new_loads=True)]),

@@ -460,6 +460,8 @@ class InteractionDraft:
     #: Largest shear traction, and whether what has met separates.
     shear_limit: float | None = None
     separates: bool = True
+    #: ``*CONTACT DAMPING`` by a fraction of the critical one.
+    damping: Card | None = None
 
     @property
     def rubs(self) -> bool:

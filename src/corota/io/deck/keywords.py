@@ -327,6 +327,9 @@ _TABLE: dict[str, Keyword] = {
         "AUGMENTEDLAGRANGE DIRECT PENALTY",
         place="model",
     ),
+    "CONTACT DAMPING": Keyword(
+        card("contact.contact_damping"), "DEFINITION", "TANGENTFRACTION", place="model"
+    ),
     "FRICTION": Keyword(
         card("contact.friction"),
         "ROUGH TAUMAX EXPONENTIALDECAY",

@@ -76,7 +76,6 @@ _LINE = "only planar solids, trusses, beams and springs are part of this version
 #: Cards that change the answer and are refused by name.
 UNSUPPORTED: dict[str, str] = {
     **dict.fromkeys(("CHANGECONTACTTYPE", "CHANGESURFACEBEHAVIOR"), _CHANGE),
-    "CONTACTDAMPING": "contact has no damping of its own; damp the bodies by *DAMPING",
     "SURFACESMOOTHING": "give round rigid surfaces by *SURFACE, TYPE=SEGMENTS with CIRCL",
     "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
     **dict.fromkeys(

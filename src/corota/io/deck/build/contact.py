@@ -139,6 +139,14 @@ class _Builder:
         return name or None
 
     def _law(self, draft: InteractionDraft) -> PressureLaw | None:
+        card, draft.damping = draft.damping, None  # said once
+        if card is not None and draft.law == "HARD":
+            text = "hard contact has no spring that could swing, so none is damped"
+            self.deck.note(f"{card.where}: {card.spelled} is ignored: {text}")
+        elif card is not None:
+            text = "damping of a pressure law is not part of this version"
+            hint = "damp the bodies by *DAMPING, or leave the card out"
+            self.deck.error(card, card.where, text, hint=hint)
         if draft.law in ("HARD", "TIED") or not draft.pressure:
             return None
         kind = cast("Literal['linear', 'tabular', 'exponential']", draft.law.lower())

@@ -101,6 +101,8 @@ class LoadBuilder:
             if beams is not None:
                 return list(self._across(draft, beams))
         load = self._load(draft)
+        if isinstance(load, BodyForce) and key(draft.row.get(1)) == "CENT":
+            return list(self._by_density(draft, load))
         scaled = isinstance(load, BodyForce) and (self.targets.mass_factor != 1.0).any()
         if scaled:
             return list(self._weights(draft, cast("BodyForce", load)))
@@ -139,6 +141,24 @@ class LoadBuilder:
             value = (draft.value[0] * x, draft.value[0] * y)
             where = draft.row.where
             yield BodyForce(mine, "line", value, amplitude, where, direction=(x, y))
+
+    def _by_density(self, draft: Draft, load: BodyForce) -> Iterator[Load]:
+        """``CENT``: density times the square of the angular velocity, by the density of cells."""
+        cells = cells_of(self.mesh, load.cells)
+        density = np.zeros(self.mesh.n_cells)
+        for section in self.model.sections:
+            density[cells_of(self.mesh, section.cells)] = section.material.rho
+        density *= self.targets.mass_factor
+        if (density[cells] <= 0.0).any():
+            label = self.mesh.cell_labels[cells[np.argmin(density[cells])]]
+            text = f"element {label} has no density, which CENT contains"
+            self.deck.row_error(draft.card, draft.row, 0, text, "give *DENSITY to its material")
+            return
+        square, *center = load.value
+        for value in distinct(density[cells]).tolist():
+            mine = cells[density[cells] == value]
+            size, none = (square / value, *center), np.zeros(0, np.int64)
+            yield replace(load, cells=mine, value=size, masses=none)
 
     def _weights(self, draft: Draft, load: BodyForce) -> Iterator[Load]:
         """Gravity of cells with a scaled mass: their weight is that of the mass before."""

@@ -32,7 +32,6 @@ _OTHER_LOADS = (
         "give a *SURFACE of the edges (S3 to S6) and its pressure: the force per length divided by "
         "the thickness",
     ),
-    (r"CENT\Z", "divide by the density and give CENTRIF, the square of the angular velocity"),
     (r"ROTDYNF\Z", "CENTRIF takes the square of the angular velocity"),
     (r"(F|VBF|SBF|SP)\d?\Z", "give springs by *SPRING, pressures by P1 to P4"),
 )
@@ -65,7 +64,7 @@ def cload(deck: Deck, card: Card) -> None:
 
 
 def dload(deck: Deck, card: Card) -> None:
-    """``*DLOAD``: pressure on faces, ``GRAV``, ``CENTRIF``."""
+    """``*DLOAD``: pressure on faces, ``GRAV``, ``CENTRIF``, ``CENT``, forces per volume."""
     now = loads_of(deck, card, "distributed")
     if now is None:
         return
@@ -76,7 +75,7 @@ def dload(deck: Deck, card: Card) -> None:
             _pressure(deck, card, row, int(face.group(2)), now, face.group(1))
         elif label == "GRAV":
             _gravity(deck, card, row, now)
-        elif label == "CENTRIF":
+        elif label in ("CENTRIF", "CENT"):
             _centrifugal(deck, card, row, now)
         elif label in ("BX", "BY", "PX", "PY"):
             _volume_force(deck, card, row, label, now)
@@ -84,7 +83,7 @@ def dload(deck: Deck, card: Card) -> None:
             _edge_traction(deck, card, row, traction.group(1), int(traction.group(2)), now)
         else:
             faces = "P1 to P4, HP1 to 4, TRVEC1 to 4, TRSHR1 to 4"
-            known = f"expected {faces}, BX, BY, PX, PY, GRAV or CENTRIF"
+            known = f"expected {faces}, BX, BY, PX, PY, GRAV, CENTRIF or CENT"
             why = next((text for rule, text in _OTHER_LOADS if re.match(rule, label)), "")
             deck.row_error(
                 card,
@@ -174,14 +173,17 @@ def _gravity(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
 
 def _centrifugal(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
     deck.extra_fields(card, row, 9)
-    square = deck.real(card, row, 2, "the square of the angular velocity")
+    what = "the square of the angular velocity"
+    if key(row.get(1)) == "CENT":
+        what = "the density times the square of the angular velocity"
+    square = deck.real(card, row, 2, what)
     names = ("x", "y", "z", "nx", "ny", "nz")
     numbers = [deck.real(card, row, i + 3, name, 0.0) for i, name in enumerate(names)]
     if square is None or None in numbers:
         return
     x, y, _, nx, ny, nz = (float(v or 0.0) for v in numbers)
     if square < 0.0:
-        deck.row_error(card, row, 2, "the square of the angular velocity must be >= 0")
+        deck.row_error(card, row, 2, f"{what} must be >= 0")
     elif nx != 0.0 or (ny == 0.0) == (nz == 0.0):
         text = "the axis must be normal to the plane: 0, 0, 1; of axisymmetric parts it is 0, 1, 0"
         deck.row_error(card, row, 6, text)
