@@ -11,7 +11,7 @@ import pytest
 
 import corota as ct
 from corota.errors import InputError
-from corota.mesh.kinds import N_NODES
+from corota.mesh.kinds import KINDS, N_NODES, PLANAR
 from corota.mesh.shape_functions import shape_functions
 from corota.results.probe import Interpolation, natural
 
@@ -26,13 +26,11 @@ def results() -> ct.Results:
     return ct.solve(model, ct.Static(increments=4), threads=1)
 
 
-@pytest.mark.parametrize("kind", ["tri3", "tri6", "quad4", "quad8", "quad9"])
+@pytest.mark.parametrize("kind", PLANAR)
 def test_natural_coordinates_are_found_in_curved_cells(kind: str) -> None:
     """The inverse of the map of a distorted cell, at points that the map itself made."""
     random = np.random.default_rng(3)
-    from corota.results.averaging import natural_nodes
-
-    corners = natural_nodes(N_NODES[kind]) * [2.0, 1.0] + 0.08 * random.standard_normal(
+    corners = np.array(KINDS[kind].natural) * [2.0, 1.0] + 0.08 * random.standard_normal(
         (N_NODES[kind], 2)
     )
     for _ in range(20):

@@ -7,21 +7,22 @@ import numpy as np
 import pytest
 
 from corota.errors import InputError
+from corota.mesh.kinds import KINDS, PLANAR
+from corota.mesh.shape_functions import shape_functions, shape_gradients
 from corota.model.materials import Elastic
-from corota.plots.surface import shape_functions
 from corota.results import invariants
-from corota.results.averaging import extrapolation, natural_nodes, section_of_cells
+from corota.results.averaging import extrapolation, section_of_cells
 
 ROUNDOFF = 1e-12
 
 
-@pytest.mark.parametrize("kind", ["tri3", "tri6", "quad4", "quad8", "quad9"])
+@pytest.mark.parametrize("kind", PLANAR)
 @pytest.mark.parametrize("points", [1, 3, 4, 6, 9])
 def test_extrapolation_keeps_linear_fields(kind, points):
     """Enough points give back a linear field at the nodes; too few give back a constant."""
     rng = np.random.default_rng(points)
     at = rng.uniform(0.05, 0.45, (points, 2))
-    nodes = natural_nodes(int(kind[-1]))
+    nodes = np.array(KINDS[kind].natural)
     matrix = extrapolation(shape_functions(kind, at))
     assert matrix @ np.full(points, 7.0) == pytest.approx(np.full(len(nodes), 7.0), abs=1e-10)
     if points >= 3:
@@ -30,10 +31,20 @@ def test_extrapolation_keeps_linear_fields(kind, points):
         assert matrix @ values == pytest.approx(wanted, abs=1e-9)
 
 
-@pytest.mark.parametrize("kind", ["tri3", "tri6", "quad4", "quad8", "quad9"])
+@pytest.mark.parametrize("kind", PLANAR)
 def test_drawn_shape_functions_are_one_at_their_node(kind):
-    nodes = natural_nodes(int(kind[-1]))
+    nodes = np.array(KINDS[kind].natural)
     assert shape_functions(kind, nodes) == pytest.approx(np.eye(len(nodes)), abs=ROUNDOFF)
+
+
+@pytest.mark.parametrize("kind", PLANAR)
+def test_gradients_of_shape_functions_are_their_derivatives(kind):
+    """Central differences are exact for polynomials of second order in each coordinate."""
+    at = np.random.default_rng(1).uniform(0.0, 0.5, (7, 2))
+    for axis, shift in enumerate(np.eye(2)):
+        ahead, behind = (shape_functions(kind, at + sign * shift) for sign in (1.0, -1.0))
+        found = shape_gradients(kind, at)[:, axis]
+        assert found == pytest.approx(0.5 * (ahead - behind), abs=ROUNDOFF)
 
 
 def test_nodal_average_of_a_linear_field_is_exact(results):

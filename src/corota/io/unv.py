@@ -106,7 +106,7 @@ def _elements(lines: list[str], at: int, stop: int, found: _Found) -> int:
         if count != kind.count:
             raise ValueError(f"element {label} of type {number} has {count} nodes")
         # Nodes are in cyclic order: each mid-side node follows its corner.
-        if kind.name in ("tri6", "quad8", "line3"):
+        if kind.quadratic:
             nodes = nodes[::2] + nodes[1::2]
         found.cells.setdefault(kind.meshio, []).append((label, nodes))
     return at

@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
@@ -46,8 +45,10 @@ class Kind:
         axisymmetric, shell.
     deck : str
         Type that decks have for it where no section gives one.
-    gradients : callable or None
-        Derivatives of the shape functions, shape (2, count), at natural coordinates r, s.
+    natural : tuple of (float, float)
+        Natural coordinates r, s of the nodes: from -1 to 1, in triangles from 0 to 1.
+    powers : tuple of (int, int)
+        Powers of r and s in the monomials of the shape functions, as many as nodes.
     points : tuple of (float, float)
         Natural coordinates at which the map is tested for folds.
     """
@@ -63,7 +64,8 @@ class Kind:
     pieces: tuple[tuple[int, ...], ...] = ()
     unv: tuple[int, ...] = ()
     deck: str = ""
-    gradients: Callable[[float, float], Floats] | None = None
+    natural: tuple[tuple[float, float], ...] = ()
+    powers: tuple[tuple[int, int], ...] = ()
     points: tuple[tuple[float, float], ...] = ()
 
     @property
@@ -76,56 +78,32 @@ class Kind:
         """Number of corners; 0 for lines and points."""
         return len(self.edges)
 
+    @property
+    def quadratic(self) -> bool:
+        """Whether its sides have a node in the middle."""
+        return any(2 in power for power in self.powers)
 
-def _tri3(r: float, s: float) -> Floats:
-    return np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])
-
-
-def _tri6(r: float, s: float) -> Floats:
-    t = 1.0 - r - s
-    return np.array(
-        [
-            [1 - 4 * t, 4 * r - 1, 0.0, 4 * (t - r), 4 * s, -4 * s],
-            [1 - 4 * t, 0.0, 4 * s - 1, -4 * r, 4 * r, 4 * (t - s)],
-        ]
-    )
+    @cached_property
+    def coefficients(self) -> Floats:
+        """Factors of the monomials (rows) in the shape functions (columns): one at its node."""
+        inverse = np.linalg.inv(monomials(np.array(self.natural), self.powers))
+        return np.asarray(inverse, dtype=np.float64)
 
 
-#: Natural coordinates of the corners of a quadrilateral.
-_R, _S = np.array([-1.0, 1.0, 1.0, -1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
+def monomials(at: Floats, powers: tuple[tuple[int, int], ...]) -> Floats:
+    """Products of powers of natural coordinates (m, 2); shape (m, k)."""
+    i, j = np.array(powers).T
+    return np.asarray(at[:, :1] ** i * at[:, 1:] ** j, dtype=np.float64)
 
 
-def _quad4(r: float, s: float) -> Floats:
-    return np.stack([_R * (1 + _S * s), _S * (1 + _R * r)]) / 4
-
-
-def _quad8(r: float, s: float) -> Floats:
-    a, b = _R, _S
-    corner = np.stack(
-        [a * (1 + b * s) * (2 * a * r + b * s), b * (1 + a * r) * (2 * b * s + a * r)]
-    )
-    middle = np.array(
-        [
-            [-r * (1 - s), (1 - s * s) / 2, -r * (1 + s), -(1 - s * s) / 2],
-            [-(1 - r * r) / 2, -s * (1 + r), (1 - r * r) / 2, -s * (1 - r)],
-        ]
-    )
-    return np.concatenate([corner / 4, middle], axis=1)
-
-
-def _quad9(r: float, s: float) -> Floats:
-    x = np.array([-1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0, -1.0, 0.0])
-    y = np.array([-1.0, -1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0, 0.0])
-    return np.stack([_line(x, r, 1) * _line(y, s, 0), _line(x, r, 0) * _line(y, s, 1)])
-
-
-def _line(nodes: Floats, r: float, order: int) -> Floats:
-    """Quadratic Lagrange functions on -1, 0, 1 (or their derivative) of the given nodes."""
-    if order == 0:
-        return np.where(nodes == 0.0, 1 - r * r, (r * r + nodes * r) / 2)
-    return np.where(nodes == 0.0, -2 * r, r + nodes / 2)
-
-
+#: Natural coordinates of the nodes.
+_TRIANGLE = ((0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5))
+_SQUARE = ((-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0), (0, 0))
+_LINE = ((-1, 0), (1, 0), (0, 0))
+#: Powers of the monomials of the shape functions: in all 1, r, s, rs, r^2, s^2, r^2s, rs^2, r^2s^2.
+_TRIANGLE_POWERS = ((0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2))
+_SQUARE_POWERS = (*_TRIANGLE_POWERS, (2, 1), (1, 2), (2, 2))
+_LINE_POWERS = ((0, 0), (1, 0), (2, 0))
 _TRIANGLE_POINTS = ((1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3))
 _TWO, _THREE = (-np.sqrt(1 / 3), np.sqrt(1 / 3)), (-np.sqrt(0.6), 0.0, np.sqrt(0.6))
 _FOUR_POINTS = tuple((r, s) for s in _TWO for r in _TWO)
@@ -141,7 +119,8 @@ KINDS: dict[str, Kind] = {
             reversal=(0, 2, 1),
             pieces=((0, 1, 2),),
             unv=(41, 51, 61, 74, 81, 91),
-            deck="CPS3", gradients=_tri3, points=_TRIANGLE_POINTS,
+            deck="CPS3", natural=_TRIANGLE[:3], powers=_TRIANGLE_POWERS[:3],
+            points=_TRIANGLE_POINTS,
         ),
         Kind(
             "tri6", 6, vtk=22, gmsh=9, frd=(8, 6), meshio="triangle6",
@@ -149,7 +128,8 @@ KINDS: dict[str, Kind] = {
             reversal=(0, 2, 1, 5, 4, 3),
             pieces=((0, 3, 5), (1, 4, 3), (2, 5, 4), (3, 4, 5)),
             unv=(42, 52, 62, 72, 82, 92),
-            deck="CPS6", gradients=_tri6, points=_TRIANGLE_POINTS,
+            deck="CPS6", natural=_TRIANGLE, powers=_TRIANGLE_POWERS,
+            points=_TRIANGLE_POINTS,
         ),
         Kind(
             "quad4", 4, vtk=9, gmsh=3, frd=(9, 4), meshio="quad",
@@ -157,7 +137,8 @@ KINDS: dict[str, Kind] = {
             reversal=(0, 3, 2, 1),
             pieces=((0, 1, 2, 3),),
             unv=(44, 54, 64, 71, 84, 94),
-            deck="CPS4", gradients=_quad4, points=_FOUR_POINTS,
+            deck="CPS4", natural=_SQUARE[:4], powers=_SQUARE_POWERS[:4],
+            points=_FOUR_POINTS,
         ),
         Kind(
             "quad8", 8, vtk=23, gmsh=16, frd=(10, 8), meshio="quad8",
@@ -165,7 +146,8 @@ KINDS: dict[str, Kind] = {
             reversal=(0, 3, 2, 1, 7, 6, 5, 4),
             pieces=((0, 4, 7), (1, 5, 4), (2, 6, 5), (3, 7, 6), (4, 5, 6, 7)),
             unv=(45, 55, 65, 75, 85, 95),
-            deck="CPS8", gradients=_quad8, points=_NINE_POINTS,
+            deck="CPS8", natural=_SQUARE[:8], powers=_SQUARE_POWERS[:8],
+            points=_NINE_POINTS,
         ),
         Kind(
             # .frd files have no type with a node in the center.
@@ -173,10 +155,13 @@ KINDS: dict[str, Kind] = {
             edges=_QUADRATIC_SIDES,
             reversal=(0, 3, 2, 1, 7, 6, 5, 4, 8),
             pieces=((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)),
-            deck="Q9", gradients=_quad9, points=_NINE_POINTS,
+            deck="Q9", natural=_SQUARE, powers=_SQUARE_POWERS,
+            points=_NINE_POINTS,
         ),
-        Kind("line2", 2, vtk=3, gmsh=1, frd=(11, 2), meshio="line", unv=(11, 21, 22)),
-        Kind("line3", 3, vtk=21, gmsh=8, frd=(12, 3), meshio="line3", unv=(24,)),
+        Kind("line2", 2, vtk=3, gmsh=1, frd=(11, 2), meshio="line", unv=(11, 21, 22),
+             natural=_LINE[:2], powers=_LINE_POWERS[:2]),
+        Kind("line3", 3, vtk=21, gmsh=8, frd=(12, 3), meshio="line3", unv=(24,),
+             natural=_LINE, powers=_LINE_POWERS),
         Kind("point1", 1, vtk=1, gmsh=15, frd=(), meshio="vertex"),
     )
 }  # fmt: skip

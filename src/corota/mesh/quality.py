@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.mesh.kinds import KINDS
+from corota.mesh.shape_functions import shape_gradients
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -131,6 +132,4 @@ def aspect_ratio(kind: str, points: Floats) -> Floats:
 
 def _gradients(kind: str) -> Floats:
     """Differentiate the shape functions at the kind's points: (n_points, 2, n_nodes)."""
-    gradients = KINDS[kind].gradients
-    assert gradients is not None
-    return np.stack([gradients(r, s) for r, s in KINDS[kind].points])
+    return shape_gradients(kind, np.array(KINDS[kind].points))

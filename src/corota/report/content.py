@@ -13,7 +13,7 @@ from corota.errors import FileError, InputError
 from corota.io.modes import as_results
 from corota.io.regular_file import parse_json, read_bytes
 from corota.io.result_reader import FileResults, read_vtkhdf
-from corota.mesh import EDGES
+from corota.mesh.kinds import KINDS
 from corota.model import elements
 from corota.model.contact import edges_or_nodes
 from corota.model.description import describe, rigid_curves
@@ -242,7 +242,10 @@ def model_chunk(results: Results, level: int = 9) -> bytes:
     }
     blocks = []
     for number, cells in enumerate(mesh.cells):
-        blocks.append({"kind": cells.kind, "edges": EDGES[cells.kind]})
+        of = KINDS[cells.kind]
+        blocks.append({"kind": of.name, "edges": of.edges})
+        if of.edges:
+            blocks[-1] |= {"powers": of.powers, "coefficients": of.coefficients.tolist()}
         arrays[f"nodes {number}"] = cells.nodes
         arrays[f"labels {number}"] = cells.labels
     sets: dict[str, list[str]] = {"node": [], "cell": [], "edge": []}

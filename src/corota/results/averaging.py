@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.arrays import distinct
+from corota.mesh.kinds import KINDS
 from corota.model.element_changes import groups_of_cells
 from corota.results.table import COMPONENTS, INVARIANTS, POSITIVE
 from corota.results.variables import STORED, averaged_value, invariant, stored_as
@@ -32,15 +33,8 @@ AVERAGING = (
 )
 
 
-#: Natural coordinates of the nodes of each cell kind, in the order of the mesh.
-_TRIANGLE = [(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)]
-_SQUARE = [(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0), (0, 0)]
-
-
-def natural_nodes(n_nodes: int) -> Floats:
-    """Natural coordinates of the nodes of a cell, shape (n_nodes, 2)."""
-    table = _TRIANGLE if n_nodes in (3, 6) else _SQUARE
-    return np.array(table[:n_nodes], dtype=np.float64)
+#: Kinds by number of nodes; planar cells before lines.
+_OF_COUNT = {kind.count: kind for kind in sorted(KINDS.values(), key=lambda kind: kind.dimension)}
 
 
 def extrapolation(shape: Floats) -> Floats:
@@ -55,9 +49,10 @@ def extrapolation(shape: Floats) -> Floats:
         Shape functions at the points.
     """
     points, nodes = shape.shape
-    corners = natural_nodes(nodes)
+    kind = _OF_COUNT[nodes]
+    corners = np.array(kind.natural, dtype=np.float64)
     at = shape @ corners
-    terms = 1 if points < 3 else 3 if nodes in (3, 6) or points == 3 else 4
+    terms = 1 if points < 3 else 3 if kind.n_corners == 3 or points == 3 else 4
 
     def basis(x: Floats) -> Floats:
         every = [np.ones(len(x)), x[:, 0], x[:, 1], x[:, 0] * x[:, 1]]

@@ -13,7 +13,7 @@ from corota.display import Brief
 from corota.errors import InputError
 from corota.lazy import lazy
 from corota.mesh.kinds import EDGES
-from corota.mesh.shape_functions import shape_functions
+from corota.mesh.shape_functions import shape_functions, shape_gradients
 from corota.names import choose
 from corota.results.history import History
 from corota.results.sampling import sampled
@@ -90,15 +90,12 @@ def natural(kind: str, corners: Floats, point: Floats) -> Floats | None:
     """Natural coordinates of a point in a cell, by Newton's method; None if it lies outside."""
     triangle = kind.startswith("tri")
     at = np.full(2, 1.0 / 3.0) if triangle else np.zeros(2)
-    step = 1e-6
     size = float(np.ptp(corners, axis=0).max())
     for _ in range(STEPS):
-        # Central differences are exact for the second-order polynomials along each axis.
-        around = at + step * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
-        x = shape_functions(kind, around) @ corners
-        jacobian = np.stack([x[1] - x[2], x[3] - x[4]], axis=1) / (2 * step)
+        miss = point - shape_functions(kind, at[None])[0] @ corners
+        jacobian = (shape_gradients(kind, at[None])[0] @ corners).T
         try:
-            change = np.linalg.solve(jacobian, point - x[0])
+            change = np.linalg.solve(jacobian, miss)
         except np.linalg.LinAlgError:
             return None
         at = at + np.clip(change, -0.5, 0.5)

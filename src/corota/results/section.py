@@ -14,11 +14,10 @@ from corota.arrays import distinct
 from corota.display import Brief
 from corota.errors import InputError
 from corota.lazy import lazy
-from corota.mesh.kinds import EDGES
+from corota.mesh.kinds import EDGES, KINDS
 from corota.mesh.parts import parts_without
-from corota.mesh.shape_functions import shape_functions
+from corota.mesh.shape_functions import shape_functions, shape_gradients
 from corota.model import elements
-from corota.results.averaging import natural_nodes
 from corota.results.history import History
 
 if TYPE_CHECKING:
@@ -421,7 +420,7 @@ def _points(
     if "S11" not in results.variables(index):
         raise InputError("the results hold no stress; section forces need S")
     depth = _thickness(results, crossing, crossing.nodes)
-    corners = natural_nodes(crossing.nodes.shape[1])
+    corners = np.array(KINDS[crossing.kind].natural)
     for block in state.fields:
         rows = np.flatnonzero(np.isin(block.cells, crossing.cells))
         if len(rows) == len(crossing.cells):
@@ -466,12 +465,7 @@ def _weights(kind: str, at: Floats) -> Floats:
 
 def _slopes(kind: str, at: Floats) -> Floats:
     """Derivatives of the shape functions by the natural coordinates, shape (p, k, 2)."""
-    step = 1e-4  # the polynomials are of second order in each coordinate: differences are exact
-    parts = []
-    for axis in np.eye(2):
-        more, less = (shape_functions(kind, at + s * step * axis) for s in (1.0, -1.0))
-        parts.append((more - less) / (2 * step))
-    return np.stack(parts, axis=-1)
+    return np.moveaxis(shape_gradients(kind, at), 1, 2)
 
 
 def _resultant(where: Floats, values: Floats, center: Floats) -> tuple[Floats, float]:

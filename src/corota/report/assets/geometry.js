@@ -1,25 +1,11 @@
 // Cells as small triangles and their edges as short lines, so that curved shapes look curved.
 
 const CORNERS = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
-const SIDES = [[0, -1], [1, 0], [0, 1], [-1, 0]];
 
-/** Shape functions of a kind of cell at natural coordinates. */
-function shapeFunctions(kind, x, y) {
-  if (kind.startsWith("tri")) {
-    const a = [1 - x - y, x, y];
-    if (kind === "tri3") return a;
-    const corners = a.map((v) => v * (2 * v - 1));
-    return [...corners, 4 * a[0] * a[1], 4 * a[1] * a[2], 4 * a[2] * a[0]];
-  }
-  if (kind === "quad4") return CORNERS.map(([i, j]) => 0.25 * (1 + i * x) * (1 + j * y));
-  if (kind === "quad9") {
-    const line = (i, t) => (i === 0 ? 1 - t * t : 0.5 * t * (t + i));
-    return [...CORNERS, ...SIDES, [0, 0]].map(([i, j]) => line(i, x) * line(j, y));
-  }
-  return [
-    ...CORNERS.map(([i, j]) => 0.25 * (1 + i * x) * (1 + j * y) * (i * x + j * y - 1)),
-    ...SIDES.map(([i, j]) => 0.5 * (i === 0 ? (1 - x * x) * (1 + j * y) : (1 - y * y) * (1 + i * x))),
-  ];
+/** Shape functions of a block's kind of cell at natural coordinates: sums of monomials. */
+function shapeFunctions({ powers, coefficients }, x, y) {
+  const terms = powers.map(([i, j]) => x ** i * y ** j);
+  return coefficients[0].map((_, k) => terms.reduce((sum, term, i) => sum + term * coefficients[i][k], 0));
 }
 
 /** Points and triangles that divide a cell into `parts` along each side. */
@@ -125,7 +111,7 @@ export class Surface {
     const { points, triangles: small } = pattern(block.kind, partsOf(block.kind, nCells));
     const corners = block.kind.startsWith("tri") ? [[0, 0], [1, 0], [0, 1]] : CORNERS;
     const chains = block.edges.map(([a, b]) => along(points, corners[a], corners[b]));
-    const shape = points.map(([x, y]) => shapeFunctions(block.kind, x, y));
+    const shape = points.map(([x, y]) => shapeFunctions(block, x, y));
     this.pieces.push({ block, shape, start: this.count, size: points.length });
     for (let row = 0; row < block.count; row++) {
       const first = this.count + row * points.length;

@@ -13,7 +13,7 @@ from corota.errors import InputError
 from corota.io.deck.build.mesh import views_in
 from corota.io.deck.build.targets import Targets
 from corota.mesh.parts import cells_of
-from corota.mesh.shape_functions import shape_functions
+from corota.mesh.shape_functions import shape_functions, shape_gradients
 from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
@@ -106,12 +106,7 @@ def _volumes(mesh: Mesh, section: Section, cells: Ints) -> Floats:
             continue
         at, weight = _points(kind)
         shape = shape_functions(kind, at)
-        # Central differences are exact: shape functions are of second order in each coordinate.
-        steps = np.eye(2)
-        slope = [
-            0.5 * (shape_functions(kind, at + d) - shape_functions(kind, at - d)) for d in steps
-        ]
-        a, b = (d @ x for d in slope)
+        a, b = (shape_gradients(kind, at) @ x).swapaxes(0, 1)
         depth = np.full(len(at), section.thickness)
         if section.nodal_thickness is not None:
             depth = shape @ section.nodal_thickness[nodes]

@@ -9,9 +9,9 @@ import numpy as np
 
 from corota.io.deck.build.mesh import views_in
 from corota.io.deck.drafts import Draft, EmbeddedDraft
-from corota.mesh.kinds import KINDS, PLANAR
+from corota.mesh.kinds import PLANAR
 from corota.mesh.parts import nodes_of_cells
-from corota.mesh.shape_functions import shape_functions
+from corota.mesh.shape_functions import shape_functions, shape_gradients
 from corota.model.constraints import Equation
 
 if TYPE_CHECKING:
@@ -99,11 +99,9 @@ def _natural(mesh: Mesh, cell: int, x: Floats) -> tuple[Floats, float]:
     points = mesh.points[_nodes(mesh, cell)]
     triangle = kind.startswith("tri")
     r = np.full(2, 1.0 / 3.0 if triangle else 0.0)
-    gradients = KINDS[kind].gradients
-    assert gradients is not None
     for _ in range(50):
         miss = x - shape_functions(kind, r[None])[0] @ points
-        step = np.linalg.solve((gradients(*r) @ points).T, miss)
+        step = np.linalg.solve((shape_gradients(kind, r[None])[0] @ points).T, miss)
         r = r + step
         if np.abs(step).max() < 1e-14:
             break
