@@ -16,6 +16,7 @@ from corota.analysis.linear.solvers import SOLVERS
 from corota.analysis.terms.term import TERMS, StatePoint, Term
 from corota.errors import InputError
 from corota.io.deck.cards.material import open_material
+from corota.io.deck.drafts import Draft
 from corota.io.deck.keywords import KEYWORDS, Keyword
 from corota.io.writers import WRITERS
 from corota.mesh.data import Cells
@@ -283,6 +284,34 @@ def test_deck_keyword(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
     monkeypatch.setitem(KEYWORDS, "WEIGHTPERVOLUME", Keyword(weight, "G", place="model"))
     assert ct.read(path).sections[0].material.rho == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize("stage", ["mesh", "sections", "model"])
+def test_deck_keyword_that_changes_the_model(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, stage: Any
+) -> None:
+    """A card that moves the nodes of a set that stands below it, once all cards are read."""
+
+    def move(targets: Any, drafts: list[Draft]) -> None:
+        for draft in drafts:
+            nodes = targets.nodes(draft)
+            if nodes is not None:
+                targets.mesh.points[targets.mesh.node_indices(nodes)] += draft.value
+
+    def shift(deck: Any, card: Any) -> None:
+        for row in card.rows():
+            by = tuple(deck.real(card, row, i, "the move") for i in (1, 2))
+            deck.later(stage, move, Draft("move", card, row, row.get(0), by))
+
+    monkeypatch.setitem(KEYWORDS, "NODESHIFT", Keyword(shift, place="model"))
+    path = tmp_path / "block.inp"
+    cards = "*NODE SHIFT\nTOP, 0.5, 0.25\n2, 1., 0.\n*NSET, NSET=TOP\n3, 4\n"
+    path.write_text(DECK.replace("*WEIGHT PER VOLUME, G=10.\n50.\n", "") + cards)
+    moved = ct.read(path).mesh.points
+    assert moved == pytest.approx(np.array([[0.0, 0.0], [2.0, 0.0], [1.5, 1.25], [0.5, 1.25]]))
+    path.write_text(path.read_text().replace("TOP, 0.5", "NONE, 0.5"))
+    with pytest.raises(ct.DeckError, match="NONE"):
+        ct.read(path)
 
 
 # -- output --------------------------------------------------------------------------------

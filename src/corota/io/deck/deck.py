@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
@@ -16,15 +16,11 @@ from corota.io.deck.drafts import (
     BehaviorDraft,
     ConnectorDraft,
     Draft,
-    EmbeddedDraft,
     GeneralDraft,
-    ImperfectionDraft,
     InitialDraft,
     Instance,
     InteractionDraft,
-    MassScalingDraft,
     MaterialDraft,
-    NonstructuralDraft,
     PairDraft,
     PretensionDraft,
     ReleaseDraft,
@@ -44,7 +40,12 @@ if TYPE_CHECKING:
     from corota.mesh.data import Floats, Ints
     from corota.model.loads import Amplitude
 
+    #: Enters the data of cards into the model: a function of targets, which know decks, and data.
+    Build = Callable[[Any, list[Any]], None]
+
 Number = TypeVar("Number", int, float)
+#: When cards enter their data: :meth:`Deck.later`.
+Stage = Literal["mesh", "sections", "model"]
 
 #: What follows from elements that were refused.
 FOLLOWS = (
@@ -92,16 +93,9 @@ class Deck:
     system: tuple[Floats, Floats] | None = None
     #: Lines of ``*NODAL THICKNESS``.
     thicknesses: list[Draft] = field(default_factory=list)
-    nonstructural: list[NonstructuralDraft] = field(default_factory=list)
-    imperfections: list[ImperfectionDraft] = field(default_factory=list)
-    embedded: list[EmbeddedDraft] = field(default_factory=list)
-    mass_scalings: list[MassScalingDraft] = field(default_factory=list)
     releases: list[ReleaseDraft] = field(default_factory=list)
-    #: Lines of initial equivalent plastic strain.
-    hardenings: list[Draft] = field(default_factory=list)
     #: Amplitudes whose values are those of the loads.
     absolute: set[str] = field(default_factory=set)
-    velocities: list[Draft] = field(default_factory=list)
     initial: list[InitialDraft] = field(default_factory=list)
     ties: list[TieDraft] = field(default_factory=list)
     attached: list[AttachedDraft] = field(default_factory=list)
@@ -133,6 +127,8 @@ class Deck:
     scope: Scope = field(default_factory=Scope)
     #: Increments between checkpoints in the steps that follow, 0 for none.
     restart: int = 0
+    #: What cards do to the model: data by stage of the build and function; see :meth:`later`.
+    builds: dict[tuple[Stage, Build], list[Any]] = field(default_factory=dict)
     step: StepDraft | None = None
     material: MaterialDraft | None = None
     instance: Instance | None = None
@@ -149,6 +145,22 @@ class Deck:
         """Whether any card defines contact, or a part of it that may be unused."""
         general = self.general is not None
         return general or bool(self.pairs or self.interactions or self.carriers)
+
+    def later(self, stage: Stage, build: Build, data: Any) -> None:
+        """Let a function enter data of a card into the model when sets and meshes are known.
+
+        Parameters
+        ----------
+        stage : {"mesh", "sections", "model"}
+            When the mesh is made; when it has sections, before ties and contact; when everything
+            but steps and initial stresses is there.
+        build : callable
+            Takes :class:`~corota.io.deck.build.targets.Targets` and the data of all such cards in
+            their order. It is called once; a function of a module, not one made by each card.
+        data : object
+            Such as a :class:`~corota.io.deck.drafts.Draft`.
+        """
+        self.builds.setdefault((stage, build), []).append(data)
 
     @property
     def n_errors(self) -> int:

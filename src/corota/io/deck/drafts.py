@@ -235,19 +235,6 @@ class InitialDraft:
 
 
 @dataclass(eq=False, repr=False)
-class ImperfectionDraft:
-    """One ``*IMPERFECTION``: modes of a result file with their factors, or moves of nodes."""
-
-    card: Card
-    file: str = ""
-    step: int = 1
-    #: Increment of a static step, 0 for the last.
-    increment: int = 0
-    modes: list[tuple[Row, int, float]] = field(default_factory=list)
-    moves: list[Draft] = field(default_factory=list)
-
-
-@dataclass(eq=False, repr=False)
 class StepDraft:
     """One step as written."""
 
@@ -416,15 +403,6 @@ class ReleaseDraft:
     row: Row
     scope: Scope
     end: int
-
-
-@dataclass(eq=False, repr=False)
-class EmbeddedDraft:
-    """One ``*EMBEDDED ELEMENT``: sets of elements whose nodes follow those of a host."""
-
-    card: Card
-    host: str
-    targets: list[Draft] = field(default_factory=list)
 
 
 @dataclass(eq=False, repr=False)
@@ -599,10 +577,8 @@ __all__ = [
     "DistributionDraft",
     "Draft",
     "ElementBlock",
-    "EmbeddedDraft",
     "Entry",
     "GeneralDraft",
-    "ImperfectionDraft",
     "InitialDraft",
     "Instance",
     "InteractionDraft",

@@ -23,15 +23,23 @@ if TYPE_CHECKING:
     from corota.model.sections import Section
 
 
-def scale_masses(targets: Targets) -> Floats:
-    """Factor of the mass of each cell, shape (n_cells,); sections get the scaled density."""
+def scale_masses(targets: Targets, drafts: list[MassScalingDraft]) -> None:
+    """Give sections the scaled density, and `targets` the factor of the mass of each cell."""
+    card = drafts[0].card
+    try:
+        targets.mass_factor = _factors(targets, drafts)
+    except InputError as error:
+        targets.deck.error(card, card.where, error.message)
+
+
+def _factors(targets: Targets, drafts: list[MassScalingDraft]) -> Floats:
     deck, model = targets.deck, targets.model
     factor = np.ones(model.mesh.n_cells)
-    first = deck.mass_scalings[0].step
-    kept = [d for d in deck.mass_scalings if d.step == first]
+    first = drafts[0].step
+    kept = [d for d in drafts if d.step == first]
     early = any((s.make or Static) not in (Static, Buckle) for s in deck.steps[: first - 1])
     said = {_words(d) for d in kept}
-    for draft in deck.mass_scalings:
+    for draft in drafts:
         if early or _words(draft) not in said:
             deck.error(
                 draft.card,

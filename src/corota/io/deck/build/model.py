@@ -17,29 +17,23 @@ from corota.io.deck.deck import nearest
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.model.element_changes import ElementChange
-from corota.model.loads import InitialVelocity
 from corota.model.model import Model
 from corota.model.steps import Buckle, Static, SteadyState
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from corota.io.deck.deck import Deck
+    from corota.io.deck.deck import Deck, Stage
     from corota.io.deck.drafts import Draft, StepDraft
     from corota.model.steps import Step
 
 # Parts that few decks have.
-add_nonstructural = lazy("corota.io.deck.build.nonstructural:add_nonstructural")
-add_embedded = lazy("corota.io.deck.cards.embedded:add_embedded")
 add_releases = lazy("corota.io.deck.cards.release:add_releases")
 base_supports = lazy("corota.io.deck.build.base_motion:base_supports")
 build_attachments = lazy("corota.io.deck.cards.attachments:build_attachments")
 build_contacts = lazy("corota.io.deck.build.contact:build_contacts")
-build_imperfections = lazy("corota.io.deck.cards.imperfection:build_imperfections")
 build_initial = lazy("corota.io.deck.cards.thermal:build_initial")
 build_tie = lazy("corota.io.deck.build.ties:build_tie")
-harden = lazy("corota.io.deck.cards.hardening:harden")
-scale_masses = lazy("corota.io.deck.build.mass_scaling:scale_masses")
 prepare_connectors = lazy("corota.io.deck.cards.connectors:prepare_connectors")
 pretension_builder = lazy("corota.io.deck.build.pretension:PretensionBuilder")
 
@@ -64,8 +58,7 @@ class ModelBuilder:
         """Everything."""
         targets = self.targets
         self.sets.fill()
-        if self.deck.imperfections:
-            build_imperfections(self.deck, self.mesh, targets.nodes)
+        self._enter("mesh")
         pretension = None
         if self.deck.pretensions:
             pretension = pretension_builder(self.deck, self.model, self.sets)
@@ -78,18 +71,7 @@ class ModelBuilder:
             self.deck.amplitudes[name] = curve.sampled(until)
         SectionBuilder(targets).build()
         model, deck = self.model, self.deck
-        if deck.nonstructural:
-            add_nonstructural(targets)
-        if deck.hardenings:
-            harden(targets)
-        if deck.mass_scalings:
-            try:
-                targets.mass_factor = scale_masses(targets)
-            except InputError as error:
-                card = deck.mass_scalings[0].card
-                deck.error(card, card.where, error.message)
-        if deck.embedded:
-            add_embedded(targets)
+        self._enter("sections")
         for tie in deck.ties:
             for view in views_in(self.meshes.views, deck, tie.card.scope):
                 targets.at = view
@@ -111,14 +93,7 @@ class ModelBuilder:
         if deck.attached or deck.properties:
             build_attachments(deck, model, targets.nodes, targets.rotating)
         model.supports += self.loads.supports(deck.supports)
-        for item in deck.velocities:
-            nodes = targets.nodes(item)
-            if nodes is not None:
-                model.velocities.append(
-                    InitialVelocity(
-                        nodes, item.value, None if item.index < 0 else item.index, item.row.where
-                    )
-                )
+        self._enter("model")
         if deck.initial:
             build_initial(deck, model, targets.nodes, targets.cells_of)
         if sum(step.perturbs for step in deck.steps) > 1:
@@ -137,6 +112,12 @@ class ModelBuilder:
         self._unused()
         model.notes += deck.notes
         return model
+
+    def _enter(self, stage: Stage) -> None:
+        """Enter the data of cards that wait for this part of the model."""
+        for (when, build), data in self.deck.builds.items():
+            if when == stage:
+                build(self.targets, data)
 
     def _check_linear(self) -> None:
         """Refuse load cases of structures that do not answer in proportion."""

@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 _MASSLESS = "SPRING"
 
 
-def add_nonstructural(targets: Targets) -> None:
+def add_nonstructural(targets: Targets, drafts: list[NonstructuralDraft]) -> None:
     """Give the cells of each ``*NONSTRUCTURAL MASS`` sections with more density."""
     deck = targets.deck
-    for draft in deck.nonstructural:
+    for draft in drafts:
         card = draft.card
         cells: set[int] = set()
         for view in views_in(targets.meshes.views, deck, card.scope):

@@ -13,9 +13,11 @@ from corota.io.deck.cards.tie import parameter_row
 from corota.io.deck.drafts import Draft
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
+from corota.model.loads import InitialVelocity
 from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
 
 if TYPE_CHECKING:
+    from corota.io.deck.build.targets import Targets
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import MaterialDraft, StepDraft
     from corota.io.deck.lexer import Card
@@ -345,7 +347,8 @@ def _velocity(deck: Deck, card: Card) -> None:
             deck.row_error(card, row, 1, f"expected 1, 2 or 6 (drilling rotation), found {dof}")
         elif dof is not None and value is not None:
             index = {1: 0, 2: 1, 6: 2}[dof]
-            deck.velocities.append(Draft("velocity", card, row, row.get(0), (value,), index))
+            draft = Draft("velocity", card, row, row.get(0), (value,), index)
+            deck.later("model", start_in_motion, draft)
 
 
 def _rotating_velocity(deck: Deck, card: Card) -> None:
@@ -365,9 +368,19 @@ def _rotating_velocity(deck: Deck, card: Card) -> None:
             deck.row_error(card, second, 0, "the axis must be normal to the plane")
         else:
             value = (vx, vy, math.copysign(spin, spin * (bz - az)) if spin else 0.0, ax, ay)
-            deck.velocities.append(Draft("velocity", card, first, first.get(0), value))
+            draft = Draft("velocity", card, first, first.get(0), value)
+            deck.later("model", start_in_motion, draft)
     if not rows or len(rows) % 2:
         deck.error(card, card.where, "two lines for each set are expected: velocities, axis")
+
+
+def start_in_motion(targets: Targets, drafts: list[Draft]) -> None:
+    """Initial velocities of the model."""
+    for item in drafts:
+        nodes = targets.nodes(item)
+        if nodes is not None:
+            dof = None if item.index < 0 else item.index
+            targets.model.velocities.append(InitialVelocity(nodes, item.value, dof, item.row.where))
 
 
 def _field(deck: Deck, card: Card) -> None:

@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.io.deck.build.mesh import views_in
-from corota.io.deck.drafts import Draft, EmbeddedDraft
+from corota.io.deck.drafts import Draft
 from corota.mesh.kinds import PLANAR
 from corota.mesh.parts import nodes_of_cells
 from corota.mesh.shape_functions import shape_functions, shape_gradients
@@ -26,6 +27,15 @@ OUTSIDE = 0.05
 ROUNDING = 1e-6
 
 
+@dataclass(eq=False, repr=False)
+class EmbeddedDraft:
+    """One ``*EMBEDDED ELEMENT``: sets of elements whose nodes follow those of a host."""
+
+    card: Card
+    host: str
+    targets: list[Draft] = field(default_factory=list)
+
+
 def embedded_element(deck: Deck, card: Card) -> None:
     """``*EMBEDDED ELEMENT[, HOST ELSET=][, EXTERIOR TOLERANCE=]``: sets of elements."""
     draft = EmbeddedDraft(card, card.value("HOSTELSET"))
@@ -36,14 +46,14 @@ def embedded_element(deck: Deck, card: Card) -> None:
     if not draft.targets:
         deck.error(card, card.where, "a data line is missing: the sets of embedded elements")
     else:
-        deck.embedded.append(draft)
+        deck.later("sections", add_embedded, draft)
 
 
-def add_embedded(targets: Targets) -> None:
+def add_embedded(targets: Targets, drafts: list[EmbeddedDraft]) -> None:
     """Let the nodes of embedded elements follow their hosts, by the shape functions of these."""
     deck, mesh = targets.deck, targets.mesh
     planar = np.array([c in PLANAR for c in _kinds(mesh)])
-    for draft in deck.embedded:
+    for draft in drafts:
         card = draft.card
         view = (views_in(targets.meshes.views, deck, card.scope) or targets.meshes.views)[0]
         found = [

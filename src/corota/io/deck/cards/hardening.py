@@ -35,17 +35,18 @@ def initial_hardening(deck: Deck, card: Card) -> None:
         elif not row.get(0):
             deck.row_error(card, row, 0, "an element number or a set is missing")
         else:
-            deck.hardenings.append(Draft("hardening", card, row, row.get(0), (strain,)))
+            draft = Draft("hardening", card, row, row.get(0), (strain,))
+            deck.later("sections", harden, draft)
 
 
-def harden(targets: Targets) -> None:
+def harden(targets: Targets, drafts: list[Draft]) -> None:
     """Give cells with an initial plastic strain the yield curve from there on."""
     deck, strain = targets.deck, np.zeros(targets.mesh.n_cells)
-    for draft in deck.hardenings:
+    for draft in drafts:
         found = targets.cells_of(draft)
         if found is not None:
             strain[found.cells] = draft.value[0]
-    card = deck.hardenings[0].card
+    card = drafts[0].card
     try:
         change_sections(targets.model, strain, 0.0, _hardened)
     except InputError as error:

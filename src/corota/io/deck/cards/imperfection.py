@@ -3,18 +3,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.errors import FileError
-from corota.io.deck.drafts import Draft, ImperfectionDraft
+from corota.io.deck.drafts import Draft
 from corota.io.deck.lexer import Row
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from corota.io.deck.build.targets import Targets
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card
     from corota.mesh import Mesh
@@ -23,6 +24,19 @@ if TYPE_CHECKING:
 
 #: Endings of result files, in the order in which they are tried.
 ENDINGS = ("modes.vtkhdf", "vtkhdf", "frd")
+
+
+@dataclass(eq=False, repr=False)
+class ImperfectionDraft:
+    """One ``*IMPERFECTION``: modes of a result file with their factors, or moves of nodes."""
+
+    card: Card
+    file: str = ""
+    step: int = 1
+    #: Increment of a static step, 0 for the last.
+    increment: int = 0
+    modes: list[tuple[Row, int, float]] = field(default_factory=list)
+    moves: list[Draft] = field(default_factory=list)
 
 
 def imperfection(deck: Deck, card: Card) -> None:
@@ -59,12 +73,13 @@ def imperfection(deck: Deck, card: Card) -> None:
             draft.moves.append(Draft("imperfection", card, row, row.get(0), by))
         elif not row.get(0):
             deck.row_error(card, row, 0, "a node number or a set is missing")
-    deck.imperfections.append(draft)
+    deck.later("mesh", move_nodes, draft)
 
 
-def build_imperfections(deck: Deck, mesh: Mesh, find: Callable[[Draft], str | Ints | None]) -> None:
+def move_nodes(targets: Targets, drafts: list[ImperfectionDraft]) -> None:
     """Move the nodes of a mesh, in place."""
-    for draft in deck.imperfections:
+    deck, mesh, find = targets.deck, targets.mesh, targets.nodes
+    for draft in drafts:
         for move in draft.moves:
             nodes = find(move)
             if nodes is not None:
@@ -160,4 +175,4 @@ def _move_by_results(
             close()
 
 
-__all__ = ["build_imperfections", "imperfection"]
+__all__ = ["imperfection", "move_nodes"]

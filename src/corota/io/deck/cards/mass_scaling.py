@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING
 
 from corota.io.deck.cards.step import open_step
 from corota.io.deck.drafts import MassScalingDraft
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card
+
+scale_masses = lazy("corota.io.deck.build.mass_scaling:scale_masses")
 
 #: How the increment that is wanted changes masses.
 TYPES = ("BELOWMIN", "UNIFORM", "SETEQUALDT")
@@ -37,4 +40,5 @@ def mass_scaling(deck: Deck, card: Card) -> None:
         if card.keyword == "VARIABLEMASSSCALING":
             deck.note(f"{card.where}: {card.spelled}: masses are scaled once, at the start")
         name, step = card.value("ELSET"), len(deck.steps)
-        deck.mass_scalings.append(MassScalingDraft(card, name, factor, increment, kind, step))
+        draft = MassScalingDraft(card, name, factor, increment, kind, step)
+        deck.later("sections", scale_masses, draft)

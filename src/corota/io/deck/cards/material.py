@@ -11,12 +11,15 @@ from corota.io.deck.cards.distribution import plane_angle
 from corota.io.deck.drafts import Draft, MaterialDraft, NonstructuralDraft, SectionDraft
 from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
+from corota.lazy import lazy
 from corota.model.local_strain import ALIASES, LOCAL_STRAINS, local_strain
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.laws import DeckLaw
     from corota.io.deck.lexer import Card, Row
+
+add_nonstructural = lazy("corota.io.deck.build.nonstructural:add_nonstructural")
 
 #: Values of ``TYPE=`` of ``*ELASTIC``, and their laws.
 ELASTIC_TYPES = {
@@ -253,7 +256,8 @@ def nonstructural_mass(deck: Deck, card: Card) -> None:
         deck.row_error(card, rows[0], 0, f"a mass must be >= 0, not {value:g}")
         return
     by_volume = share == kinds[1]
-    deck.nonstructural.append(NonstructuralDraft(card, rows[0], elset, value, units, by_volume))
+    draft = NonstructuralDraft(card, rows[0], elset, value, units, by_volume)
+    deck.later("sections", add_nonstructural, draft)
 
 
 def shell_section(deck: Deck, card: Card) -> None:
