@@ -9,12 +9,13 @@ from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.terms.contact.equations import ContactEquations
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
+from corota.analysis.terms.contact.path import ContactPathEquations
 from corota.model.contact import METHODS
 
 STEP = 1e-6
 
 
-def problem(method, law):
+def problem(method, law, angle=0.0):
     low = ct.mesh.rectangle(3.0, 1.0, 4, 1)
     up = ct.mesh.rectangle(1.3, 0.5, 3, 1, origin=(0.7, 0.98))
     mesh = ct.mesh.assembly(low=low, up=up)
@@ -25,6 +26,8 @@ def problem(method, law):
     circle = ct.RigidCurve.circle((1.3, 2.45), 1.0, reference=disc)
     model.contact("up.bottom", "low.top", method=method, friction=0.3, law=law)
     model.contact("up.top", circle, method=method, friction=0.3)
+    if angle:
+        model.local_axes("low.top", angle=angle)
     system = System(model, Multifrontal())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
     return ContactEquations(system)
@@ -88,3 +91,17 @@ def test_rows_and_columns_are_derivatives(method, law):
         dz[n + second + slips] = follow
     assert -slope(dz)[0] == pytest.approx(force, abs=1e-6 * np.abs(force).max())
     assert slope(dz)[1][~gone] == pytest.approx(rows[~gone], abs=1e-6 * np.abs(rows).max())
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_paths_predict_gaps_along_local_axes(method):
+    self = ContactPathEquations(problem(method, None, angle=0.4).system, [])
+    rng = np.random.default_rng(2)
+    z = np.concatenate([0.01 * rng.standard_normal(self.n), np.ones(self.term.n)])
+    du = rng.standard_normal(self.n)
+    rates = self.gap_rates(self.evaluate(z, 1.0), du)
+    move = np.concatenate([STEP * du, np.zeros(self.term.n)])
+    up, down = (self.evaluate(z + sign * move, 1.0).contact_state.terms for sign in (1.0, -1.0))
+    for (rate, _), a, b in zip(rates, up, down, strict=True):
+        slope = (a.gap - b.gap) / (2.0 * STEP)
+        assert rate == pytest.approx(slope, abs=1e-6 * np.abs(slope).max())
