@@ -62,6 +62,17 @@ def test_a_clamp_of_the_model_is_released() -> None:
     assert sag[-1] == pytest.approx(cantilever.history("U2", at="right", combine="min").values[-1])
 
 
+def test_supports_at_lists_of_nodes_are_released_as_those_at_sets() -> None:
+    named, _ = bar()
+    listed = named.copy()
+    mesh = listed.mesh
+    for owner in (listed, *listed.steps):
+        for support in owner.supports:
+            support.nodes = mesh.node_indices(support.nodes)
+    at_sets, at_lists = (ct.solve(model).frames[-1].U for model in (named, listed))
+    assert np.array_equal(at_lists, at_sets)
+
+
 def test_without_a_support_there_is_nothing_to_release() -> None:
     model, free = bar()
     free.release("top", y=False)

@@ -115,7 +115,11 @@ class Supports:
 
     def _release(self, items: list[Fixed]) -> None:
         """End the supports of a place in some directions."""
-        ended = [s for s in self.acting if any(s.same_dofs(item) for item in items)]
+        ended = []
+        stay = []
+        for support in self.acting:
+            ends = any(support.same_dofs(item) for item in items)
+            (ended if ends else stay).append(support)
         if not ended:
             where, which = items[0].place, ", ".join(list(DOFS)[item.dof] for item in items)
             places = ", ".join(dict.fromkeys(s.place for s in self.acting)) or "none"
@@ -124,7 +128,7 @@ class Supports:
                 f"release; supports are at: {places}",
                 items[0].where,
             )
-        self.acting = [s for s in self.acting if s not in ended]
+        self.acting = stay
         freed = np.zeros(len(self.constrained), bool)
         for supports, free in ((ended, True), (self.acting, False)):
             for support in supports:
