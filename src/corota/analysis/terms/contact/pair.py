@@ -590,18 +590,18 @@ class Pair:
         begin = q if rates else np.where((q != 0.0) & limited, np.sign(q) * bound, last)
         # Constraints that opened may have slid back without traction.
         work = stays * np.maximum(-0.5 * (begin + q) * slip, 0.0)
-        work += (1.0 if rates else 0.5) * (now - stays) * np.maximum(-q * slip, 0.0)
-        self.friction_work += float(work.sum())
+        comes = float(((now - stays) * np.maximum(-q * slip, 0.0)).sum())
+        self.friction_work += float(work.sum()) + (1.0 if rates else 0.5) * comes
         late = stays * np.maximum(0.5 * (last - begin) * slip, 0.0)
         self.beyond_trapezoid += float(late.sum())
-        if total > 0.0 and not rates:
+        if total > 0.0 and self.start is None:
             way = float((now * np.maximum(-q * slip, 0.0)).sum()) / total
             leaves = was - stays
             at_first = np.sign(float((now * q).sum())) * last
-            left = float((leaves * np.where(limited, bound, at_first)).sum())
+            left = 0.0 if turns else float((leaves * np.where(limited, bound, at_first)).sum())
             grown = left - float((leaves * at_first).sum())
             self.friction_work += 0.5 * max(left, 0.0) * way
-            self.beyond_trapezoid += 0.5 * max(grown, 0.0) * way
+            self.beyond_trapezoid += 0.5 * max(grown, 0.0) * way + (0.5 * comes if turns else 0.0)
 
 
 def _surfaces(edges: Ints, nodes: Ints) -> Ints:
