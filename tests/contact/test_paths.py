@@ -80,7 +80,13 @@ def test_stability_is_that_of_the_beam_without_the_multipliers():
 
 
 def test_friction_that_slips_tells_no_stability():
-    found = along(beam(friction=0.3), increments=3)
+    """A probe beside the middle, where the surface is inclined, slides on it."""
+    model = beam(friction=0.3)
+    probe = int(model.mesh.node_sets["probe"][0])
+    place, radius = (6.0, model.mesh.points[probe, 1]), bistable_beam.RADIUS
+    tip = ct.RigidCurve.arc(place, radius, 45.0, -180.0, reference=probe)
+    model.contacts[0].master = tip
+    found = along(model, increments=3)
     assert "stable" not in found.frames[-1].scalars
     assert any("friction slips" in note for note in found.notes)
 

@@ -14,7 +14,7 @@ E, NU, INNER, OUTER, OVERLAP = 210e3, 0.3, 10.0, 20.0, 0.02
 
 
 def quarter(
-    element: str, method: str, n: int, friction: float = 0.0
+    element: str, method: str, n: int, friction: float = 0.0, turns: bool = False
 ) -> tuple[ct.Results, np.ndarray]:
     """A quarter of a ring on a shaft that is too thick, and the nodes of its bore by angle."""
 
@@ -40,11 +40,13 @@ def quarter(
         n,
         cell=cell,
     )
+    axle = ct.mesh.add_node(mesh, 0.0, 0.0, "axle")
     model = ct.Model(mesh)
     model.section(element=element, material=ct.Elastic(E=E, nu=NU))
     model.fix("bottom", x=None, y=0.0)
     model.fix("top", x=0.0, y=None)
-    shaft = ct.RigidCurve.circle((0.0, 0.0), INNER + OVERLAP)
+    model.fix("axle", rotation=not turns)
+    shaft = ct.RigidCurve.circle((0.0, 0.0), INNER + OVERLAP, reference=axle)
     model.contact("left", shaft, method=method, friction=friction, name="fit")
     nodes = mesh.nodes_of("left")
     order = np.argsort(np.arctan2(*mesh.points[nodes].T[::-1]))
@@ -52,6 +54,7 @@ def quarter(
 
 
 @pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("friction", [0.0, 0.1])
 @pytest.mark.parametrize(
     ("element", "n", "method"),
     [
@@ -64,10 +67,10 @@ def quarter(
     ],
 )
 def test_a_quarter_of_a_press_fit_has_the_pressure_of_lame(
-    element: str, n: int, method: str
+    element: str, n: int, method: str, friction: float
 ) -> None:
     """p = E d / a / ((b^2 + a^2) / (b^2 - a^2) + nu) everywhere, in plane stress."""
-    results, nodes = quarter(element, method, n)
+    results, nodes = quarter(element, method, n, friction)
     ratio = (OUTER**2 + INNER**2) / (OUTER**2 - INNER**2)
     exact = E * OVERLAP / INNER / (ratio + NU)
     pressure = results.nodal("CPRESS")[nodes]
@@ -80,16 +83,16 @@ def test_a_quarter_of_a_press_fit_has_the_pressure_of_lame(
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("n", [8, 32])
-def test_with_friction_the_mean_gap_of_the_last_edge_is_noted(n: int) -> None:
+def test_where_a_drum_may_turn_below_a_rough_arch_the_mean_gap_is_noted(n: int) -> None:
     """The mean gap of the last edge is h^2/12R deeper than those of its nodes."""
-    results, _ = quarter("Q4I", "mortar", n, 0.1)
+    results, _ = quarter("Q4I", "mortar", n, 0.1, turns=True)
     (note,) = (text for text in results.notes if "round, has friction" in text)
     edge = 2.0 * INNER * np.sin(0.25 * np.pi / n)
     found = re.search(r"which is (\S+) deeper", note)
     assert found is not None
     assert float(found[1]) == pytest.approx(edge**2 / (12.0 * INNER), rel=0.02)
     for method, element in (("node_to_segment", "Q4I"), ("mortar", "Q8R")):
-        others, _ = quarter(element, method, n, 0.1)
+        others, _ = quarter(element, method, n, 0.1, turns=True)
         assert not any("round, has friction" in text for text in others.notes)
 
 
@@ -123,8 +126,11 @@ def test_half_of_a_block_on_a_cylinder_has_the_pressure_of_the_whole(role: str) 
 
 
 @pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("friction", [0.0, 0.3])
 @pytest.mark.parametrize("edges", [16, 40])
-def test_half_of_an_arch_below_a_probe_has_the_force_of_the_whole(edges: int) -> None:
+def test_half_of_an_arch_below_a_probe_has_the_force_of_the_whole(
+    edges: int, friction: float
+) -> None:
     """A cosine arch, round on its upper side, whose guided middle a round probe presses."""
     force = []
     for left in (-50.0, 0.0):
@@ -142,7 +148,7 @@ def test_half_of_an_arch_below_a_probe_has_the_force_of_the_whole(edges: int) ->
         model.fix(np.flatnonzero(np.abs(mesh.points[:probe, 0]) < 1e-9), x=0.0, y=None)
         model.fix("probe", y=-1.0, rotation=True)
         circle = ct.RigidCurve.circle((0.0, 9.0), 5.0, reference=probe)
-        model.contact("top", circle, name="probe")
+        model.contact("top", circle, friction=friction, name="probe")
         frame = ct.solve(model, ct.Static()).frames[-1]
         force.append(frame.RF[probe, 1] / (50.0 - left))
     assert force[1] == pytest.approx(force[0], rel=1e-6)

@@ -50,6 +50,8 @@ const KEPT: f64 = 0.175;
 const ROUND: f64 = 3.0;
 /// Part of the sagitta by which a round is deeper between the nodes of an edge than at them.
 const BETWEEN: f64 = 0.01;
+/// Part of the sagitta by which both nodes of a chord of a round may be off it: halfway to a tangent.
+const DRAWN: f64 = 0.5;
 /// Part of half a face by which a point without radius may pass its free end: rounding.
 const HOLD: f64 = 1e-6;
 
@@ -114,6 +116,9 @@ pub struct Lines {
     half: Vec<f64>,
     both: Vec<bool>,
     chains: Chains,
+    /// Rounds of the master and slave edges whose nodes both lie on them in the reference
+    /// configuration: a rope drawn around a drum, whose chords are inside of it.
+    chords: Vec<(usize, usize)>,
     /// Of each circle: the last evaluation, the side at the start of the increment, the last commit.
     seen: Vec<Option<Met>>,
     base: Vec<Option<Met>>,
@@ -169,7 +174,21 @@ impl Lines {
             })
             .collect();
         let n = circles.len();
+        let chord = |i: usize, j: usize| {
+            let (circle, edge) = (circles[i], faces.edge(j).expect("an edge of the slave"));
+            let (p, width) = (place(circle.center, faces, x), circle.radius + half[j]);
+            edge.nodes().iter().all(|&n| {
+                let off = (x[n as usize][0] - p[0]).hypot(x[n as usize][1] - p[1]) - width;
+                off.abs() < DRAWN * edge.length * edge.length / (8.0 * width)
+            })
+        };
+        let chords = (n_nodes..n)
+            .filter(|&i| matches!(circles[i].center, Center::Arc(_)))
+            .flat_map(|i| (n_master..faces.len()).map(move |j| (i, j)))
+            .filter(|&(i, j)| chord(i, j))
+            .collect();
         Self {
+            chords,
             circles,
             n_nodes,
             nearest,
@@ -333,6 +352,9 @@ impl Lines {
         let Some(edge) = edge.filter(|e| self.circles[i].radius <= ROUND * e.length) else {
             return false;
         };
+        if self.chords.contains(&(i, met.face)) {
+            return false;
+        }
         let ends = edge.nodes().iter().map(|&n| x[n as usize]).map(|q| [q[0], q[1]]);
         let width = self.circles[i].radius + self.half[met.face];
         let closest = ends

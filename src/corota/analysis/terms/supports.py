@@ -115,8 +115,8 @@ class Supports:
 
     def _release(self, items: list[Fixed]) -> None:
         """End the supports of a place in some directions."""
-        ended = []
-        stay = []
+        ended: list[Fixed] = []
+        stay: list[Fixed] = []
         for support in self.acting:
             ends = any(support.same_dofs(item) for item in items)
             (ended if ends else stay).append(support)

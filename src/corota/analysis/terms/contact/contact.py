@@ -225,7 +225,7 @@ class ContactTerm(Term):
         constrained = self.system.by_node(self.system.constrained.astype(float))
         for pair in self.pairs:
             pair.fixed = pair.start = None
-            pair.hold(constrained)
+            pair.hold(constrained, self.persistent)
             if self.number == 1 and pair.guided_ends.any() and not self.system.axisymmetric:
                 mesh = self.system.model.mesh
                 note = guided_round_note(pair, mesh.points, mesh.node_labels)

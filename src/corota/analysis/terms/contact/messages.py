@@ -133,7 +133,9 @@ def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
     The last edge keeps its mean gap. Of a round with the radius R it is h^2/12R deeper than the
     gaps of its nodes, which all other edges take, and without friction this one as well.
     """
-    if pair.beside is None or pair.tied or not pair.two or (pair.slave.nodes[:, 2] >= 0).any():
+    if pair.beside is None or pair.tied or not pair.keeps_means:
+        return ""
+    if (pair.slave.nodes[:, 2] >= 0).any():
         return ""
     left, right = pair.beside
     for k in np.flatnonzero(pair.guided_ends):
@@ -149,10 +151,10 @@ def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
             depth = math.hypot(*first) * turn / 12.0
             return (
                 f"contact pair {pair.name!r}: the slave surface is round, has friction, and a "
-                f"support guides its end at node {labels[pair.nodes[k]]} (a plane of symmetry): "
-                f"its last edge keeps a mean gap, which is {depth:.3g} deeper than those of its "
-                "nodes. Where this counts beside the deformation, pressures there are wrong: take "
-                "method='node_to_segment', quadratic elements or the whole round"
+                f"support guides its end at node {labels[pair.nodes[k]]}, along which the other "
+                f"side may move: its last edge keeps a mean gap, which is {depth:.3g} deeper than "
+                "those of its nodes. Where this counts beside the deformation, pressures there are "
+                "wrong: take method='node_to_segment', quadratic elements or the whole round"
             )
     return ""
 

@@ -14,7 +14,7 @@ from corota.analysis.terms.contact.discrete_gradient import discrete_gradient
 from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SLIPPING, Terms
 from corota.analysis.terms.contact.setup import contact_core, tie_core
 from corota.arrays import distinct
-from corota.model.contact import METHODS, ContactPair, Tie
+from corota.model.contact import METHODS, ContactPair, RigidCurve, Tie
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -129,6 +129,10 @@ class Pair:
         self.beside: tuple[Ints, Ints] | None = None
         self.held_ends = np.zeros(self.n, bool)  # fixed ends of the slave
         self.guided_ends = self.held_ends  # those that a support guides
+        #: Guided ends whose other side is held along the same direction: constraint, node of the
+        #: other side (-1 for a fixed curve) and direction.
+        self.planes: list[tuple[int, int, Floats]] = []
+        self.resting = self.held_ends  # those of these that nothing draws along the plane
         integrates = isinstance(item, ContactPair) and METHODS[item.method]["integrates"]
         if integrates and not self.slave.pointwise:
             ends = self.place[self.slave.nodes[:, :2]]
@@ -196,7 +200,7 @@ class Pair:
         if not self.active:
             return self._nothing()
         if not nlgeom:
-            return self._since(self._linear(x, old))
+            return self._at_planes(self._since(self._linear(x, old)), x)
         before = old if self.rubs else None
         middle = None
         if self.start is not None and x is not old and (acts or self._may_act()):
@@ -216,7 +220,27 @@ class Pair:
                 NONE * self.size,
             )
             terms.slip = terms.between.slip
-        return self._since(terms)
+        return self._at_planes(self._since(terms), x)
+
+    def _at_planes(self, terms: Terms, x: Floats) -> Terms:
+        """The terms without slip where a plane of symmetry cuts a rough slave.
+
+        Nothing slides across the plane, and a shear traction there goes to the support: it is zero.
+        With tangents of edges, which are inclined to the plane, the node would seem to slip.
+        """
+        if not self.planes:
+            return terms
+        moved = x - self.reference
+        self.resting = np.zeros(self.n, bool)
+        for k, other, along in self.planes:
+            way = moved[self.nodes[k]].copy()
+            if other >= 0:
+                way -= moved[other]
+            turns = abs(way[2]) * self.size if other >= 0 and self.master is None else 0.0
+            self.resting[k] = max(abs(float(way[:2] @ along)), turns) <= self.noise
+        slides = ~self.resting
+        gradient = np.where(slides[terms.constraint, None], terms.slip_gradient, 0.0)
+        return replace(terms, slip=np.where(slides, terms.slip, 0.0), slip_gradient=gradient)
 
     def gaps_at(self, term: Any, number: int, x: Floats) -> Terms:
         """Gaps of the committed state, at positions `x`, without conditions on their rates."""
@@ -226,16 +250,19 @@ class Pair:
             terms = self.evaluate(x, x, term.system.nlgeom)
         return terms.bare or terms
 
-    def hold(self, constrained: Floats) -> None:
+    def hold(self, constrained: Floats, moves: bool) -> None:
         """Find the ends of the slave that supports hold in a step, and tell the core.
 
         A fixed end gives its part to its neighbor. An end that is guided tips nothing: the core
-        weighs gaps there as inside the surface, of rough surfaces with the shape functions.
+        weighs gaps and slips there as inside the surface, or with the shape functions where it
+        keeps means.
 
         Parameters
         ----------
         constrained : ndarray, shape (n_nodes, 3)
             Sum of the unit vectors along which supports prescribe displacements.
+        moves : bool
+            Whether slips are those of an increment of the energy-momentum scheme.
         """
         if self.beside is None:
             return
@@ -244,7 +271,48 @@ class Pair:
         count = np.round((constrained[self.nodes, :2] ** 2).sum(axis=1))
         self.held_ends = ends & (count == 2)
         self.guided_ends = ends & (count == 1)
-        self.core.hold(self.guided_ends.tolist(), self.two)
+        self.planes = []
+        self.resting = np.zeros(self.n, bool)
+        if self.two and not self.tied and not moves:
+            for k in np.flatnonzero(self.guided_ends).tolist():
+                along = constrained[self.nodes[k], :2]
+                other = self._across(k, along, constrained)
+                if other is None:
+                    self.planes = []
+                    break
+                self.planes.append((k, other, along))
+        self.core.hold(self.guided_ends.tolist(), self.keeps_means)
+
+    @property
+    def keeps_means(self) -> bool:
+        """Whether guided ends of a rough slave keep their mean gaps.
+
+        With the slip of the end node alone a traction along the support would move nothing and
+        could take any size, unless the other side is held as well.
+        """
+        return self.two and not self.planes
+
+    def _across(self, k: int, along: Floats, constrained: Floats) -> int | None:
+        """Node of the other side that supports hold along the same direction as a guided end.
+
+        That of a rigid curve, -1 for a fixed one; of a body the nearest one on the plane across the
+        direction. None if there is none.
+        """
+        if isinstance(self.item, ContactPair) and isinstance(self.item.master, RigidCurve):
+            node = self.item.master.reference
+            if not isinstance(node, int | np.integer):
+                return -1
+            turns = self.item.master.turns and not constrained[node, 2]
+            fixed = abs(abs(float(constrained[node, :2] @ along)) - 1.0) < NONE
+            return int(node) if fixed and not turns else None
+        nodes = self.slave.node_list if self.master is None else self.master.node_list
+        nodes = nodes[nodes != self.nodes[k]]
+        apart = self.reference[nodes, :2] - self.reference[self.nodes[k], :2]
+        same = np.abs(np.abs(constrained[nodes, :2] @ along) - 1.0) < NONE
+        found = np.flatnonzero(same & (np.abs(apart @ along) <= NONE * self.size))
+        if not len(found):
+            return None
+        return int(nodes[found[np.argmin(np.hypot(*apart[found].T))]])
 
     def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
         """Constraints of slave surfaces on which none is closed at a committed state."""
@@ -506,6 +574,10 @@ class Pair:
             found[0][backed] -= less
             stuck = state[backed] == CLOSED
             found[2][backed[stuck]] -= less[stuck]
+        for k in np.flatnonzero(self.resting):
+            # Nothing depends on the shear traction there: that of what sticks stays.
+            if state[k] == CLOSED:
+                found[2][k] -= REDUNDANT * self.full[k] / self.stiffness[k]
         return tuple(found)  # type: ignore[return-value]
 
     def backed(self, terms: Terms, state: NDArray[np.int8]) -> Ints:
