@@ -106,7 +106,7 @@ def test_no_representation_is_long(results: ct.Results) -> None:
     # Those have a few numbers each and no arrays.
     small = {
         "Amplitude", "ArcLength", "BodyForce", "CowperSymonds", "CriticalPoint",
-        "DisplacementControl", "Expansion", "InitialStress", "InitialTemperature", "Iteration",
+        "DecayingFriction", "DisplacementControl", "Expansion", "FrictionTable", "InitialStress", "InitialTemperature", "Iteration",
         "Modes", "Norton", "PressureLaw", "RateCurves", "SteadyState", "Temperature", "Visco",
         "Voce", "WLF", "YieldRatio",
     }  # fmt: skip

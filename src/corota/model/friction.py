@@ -140,7 +140,8 @@ Friction = float | DecayingFriction | FrictionTable
 
 def largest(friction: Friction) -> float:
     """Largest coefficient of friction that is reached."""
-    return friction if isinstance(friction, float | int | np.number) else friction.largest
+    most: float = getattr(friction, "largest", friction)
+    return most
 
 
 def coefficients(friction: Friction, rate: Floats, pressure: Floats) -> Floats:

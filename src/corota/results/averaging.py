@@ -50,7 +50,7 @@ def extrapolation(shape: Floats) -> Floats:
     """
     points, nodes = shape.shape
     kind = _OF_COUNT[nodes]
-    corners = np.array(kind.natural, dtype=np.float64)
+    corners = np.array(kind.natural or [(0.0, 0.0)], dtype=np.float64)
     at = shape @ corners
     terms = 1 if points < 3 else 3 if kind.n_corners == 3 or points == 3 else 4
 

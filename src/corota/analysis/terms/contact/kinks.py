@@ -38,8 +38,15 @@ if TYPE_CHECKING:
 
 #: Share of a difference of contact forces that must be a jump.
 JUMP = 0.25
+#: Part of the way, and share of the least jump: forces that differ by less on so short a way change
+#: gradually.
+SMALL, GRADUAL = 2.0**-8, 0.5
 #: Width in which the kink is searched again, in distances between its sides.
 WIDTH = 4.0
+#: And before, nearby, in distances that the last correction was to go.
+NEAR = (0.2, 3.0)
+#: Least width in which it is searched, over the rounding of gaps.
+ROUNDED = 1e3
 
 
 class Sides:
@@ -97,6 +104,8 @@ class Sides:
                 high, last = middle, force
             else:
                 low, first = middle, force
+            if high - low <= SMALL and float(np.abs(last - first).max()) <= GRADUAL * JUMP * whole:
+                return None
         jump = last - first
         return (low, high, jump) if float(np.abs(jump).max()) > JUMP * whole else None
 
@@ -129,21 +138,27 @@ def near_side(term: ContactTerm, point: StatePoint, kink: Kink) -> ContactState 
     The kink takes the new normal, jump and distance.
     """
     u, sides = point.u, Sides(term, point.multipliers, point.time)
+    # In a width of rounding either side may come first.
+    least = ROUNDED * sides.noise
+    for width in (*(max(share * abs(kink.distance), least) for share in NEAR), kink.width):
+        if width > kink.width:
+            continue
 
-    def place(t: float) -> Floats:
-        return u + (2.0 * t - 1.0) * kink.width * kink.move
+        def place(t: float, w: float = width) -> Floats:
+            return u + (2.0 * t - 1.0) * w * kink.move
 
-    at = sides.jump(place)
-    new = None if at is None else _kink(sides, place, at)
-    if at is None or new is None or float(new.jump @ kink.jump) <= 0.0:
-        return None
-    kink.far = sides.state(place(at[1])).terms
-    state = sides.state(place(at[0]))
-    kink.distance = (2.0 * at[0] - 1.0) * kink.width * float(new.normal @ kink.move)
-    kink.normal, kink.move, kink.jump = new.normal, new.move, new.jump
-    kink.follow(u)
-    state.force = state.force + kink.share * kink.jump
-    return state
+        at = sides.jump(place)
+        new = None if at is None else _kink(sides, place, at)
+        if at is None or new is None or float(new.jump @ kink.jump) <= 0.0:
+            continue
+        kink.far = sides.state(place(at[1])).terms
+        state = sides.state(place(at[0]))
+        kink.distance = (2.0 * at[0] - 1.0) * width * float(new.normal @ kink.move)
+        kink.normal, kink.move, kink.jump = new.normal, new.move, new.jump
+        kink.follow(u)
+        state.force = state.force + kink.share * kink.jump
+        return state
+    return None
 
 
 def both_sides(kink: Kink, near: list[Terms]) -> list[Terms]:

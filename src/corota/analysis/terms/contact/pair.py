@@ -43,6 +43,8 @@ NONE = 1e-8
 REDUNDANT = 1e-3
 #: Covered fraction of its area below which a node passes its part to a neighbor.
 WEAK = 0.2
+#: And that above which it takes it back for good.
+AMPLE = 0.5
 #: Coefficient that stands for zero where it is larger in other steps.
 LEAST_FRICTION = 1e-9
 EPS = float(np.finfo(float).eps)
@@ -379,8 +381,14 @@ class Pair:
 
     def _read(self, raw: _core._Gaps) -> Terms:
         self.seen = self.seen or bool(len(raw["constraint"]))
-        if self.beside is not None and not self.frozen:
-            self.owner = self._owners(raw["total_area"])
+        if self.beside is not None:
+            area = raw["total_area"]
+            if self.frozen:
+                # An iterate far from the end of the increment may have seen little.
+                ample = (area >= AMPLE * self.full) & ~self.held_ends
+                self.owner = np.where(ample, np.arange(self.n), self.owner)
+            else:
+                self.owner = self._owners(area)
         return self._shared(raw)
 
     def _shared(self, raw: _core._Gaps) -> Terms:

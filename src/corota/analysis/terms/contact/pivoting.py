@@ -393,11 +393,12 @@ class Pivoting:
 def pivoted(problem: ContactProblem, at: Evaluation, right_sides: RightHandSides) -> Found | None:
     """A correction with states from the whole linearized problem; None if there is none."""
     pairs = list(problem.pairs(at.contact_state))
-    last = problem.last or [pair.states(terms, p, q) for pair, terms, (p, q) in pairs]
-    # With all closed constraints sticking, bodies that friction alone supports are constrained and
-    # the matrix is symmetric.
-    bases = [[np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in last]]
-    bases.append([s.copy() for s in last])
+    first = [pair.states(terms, p, q) for pair, terms, (p, q) in pairs]
+    starts = [first] if problem.last is None else [problem.last, first]
+    # With all closed constraints sticking, bodies held by friction are constrained and the matrix
+    # is symmetric.
+    bases = [[np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in b] for b in starts]
+    bases += [[s.copy() for s in b] for b in starts]
     for base in bases:
         for s, (pair, terms, _) in zip(base, pairs, strict=True):
             s[terms.area <= COVERED * pair.full] = OPEN

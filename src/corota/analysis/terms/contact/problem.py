@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.failure import GiveUp
 from corota.analysis.linear.coupling import Coupling
 from corota.analysis.linear.saddle_point import SaddlePointSystem
 from corota.analysis.linear.triplets import Triplets
@@ -38,6 +39,10 @@ if TYPE_CHECKING:
 
 #: Corrections after which partly covered nodes keep their owners.
 CORRECTIONS_BEFORE_FREEZE = 4
+#: Repetitions of a set of states before the whole linearized problem decides.
+MAX_STATE_REPEATS = 2
+#: Repetitions before the increment is given up.
+MAX_REPEATS_BEFORE_CUTBACK = 7
 #: Fraction of the friction bound from which a correction is repeated with slip, and how often.
 FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
 #: Relative difference of two gaps that is rounding.
@@ -76,6 +81,8 @@ class ContactProblem:
         Dofs.
     last : list of ndarray or None
         States of the last correction.
+    seen : dict of bytes to int
+        How often a set of states came back.
     slip_directions : dict of int to ndarray
         Of slipping tractions, by the pair's first multiplier.
     flips : list of ndarray
@@ -119,6 +126,7 @@ class ContactProblem:
         self.last: States | None = None
         if self.term.at is not None and self.term.at.states:
             self.last = [s.copy() for s in self.term.at.states]
+        self.seen: dict[bytes, int] = {}
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.term.pairs]
         self.sliding = self.corrections = self.pivoted = 0
         self.pivoting = False
@@ -235,15 +243,25 @@ class ContactProblem:
     # -- states --------------------------------------------------------------------------
 
     def chosen(self, contact_state: ContactState) -> States:
-        """States for the next correction, each by itself."""
+        """States for the next correction; the whole linearized problem once a set comes back."""
         before: Sequence[NDArray[np.int8] | None] = self.last or [None] * len(self.term.pairs)
         wanted = [
             pair.states(terms, p, q, last)
             for (pair, terms, (p, q)), last in zip(self.pairs(contact_state), before, strict=True)
         ]
         if self.last is not None:
-            for flips, new, old in zip(self.flips, wanted, self.last, strict=True):
-                flips += new != old
+            changed = [a != b for a, b in zip(wanted, self.last, strict=True)]
+            for flips, new in zip(self.flips, changed, strict=True):
+                flips += new
+            if any(c.any() for c in changed):
+                key = b"".join(s.tobytes() for s in wanted)
+                self.seen[key] = self.seen.get(key, 0) + 1
+                if self.seen[key] > MAX_REPEATS_BEFORE_CUTBACK:
+                    raise GiveUp(
+                        "the contact states cycle: the same nodes open, stick and slip as in "
+                        f"{self.seen[key] - 1} earlier iterations"
+                    )
+                self.pivoting = self.pivoting or self.seen[key] > MAX_STATE_REPEATS
         self.last = wanted
         return wanted
 
@@ -350,6 +368,9 @@ class ContactProblem:
             except SingularError:
                 self.slip_directions = before
                 break
+            if self._far(other[0], right_sides):
+                self.slip_directions = before
+                break
             found, states = other, new
         return *found, states
 
@@ -358,12 +379,13 @@ class ContactProblem:
         if self.bounded:
             return False
         moved = self.system.by_node(du[:, 0])[:, :2]
-        prescribed = self.system.by_node(right_sides.constrained[:, 0])[:, :2]
-        least = 2.0 * float(np.abs(prescribed).max())
-        return any(
-            pair.rubs and np.abs(moved[pair.slave.node_list]).max() > pair.reach + least
-            for pair in self.term.pairs
+        constrained = 2.0 * float(
+            np.abs(self.system.by_node(right_sides.constrained[:, 0])[:, :2]).max()
         )
+        for pair in self.term.pairs:
+            if pair.rubs and np.abs(moved[pair.slave.node_list]).max() > pair.reach + constrained:
+                return True
+        return False
 
     def _close_some(
         self,

@@ -61,8 +61,9 @@ if TYPE_CHECKING:
 MOST, EACH, REACHED = 400, 14, 1e-6
 #: Stiffness of the springs per stiffness of their nodes: first, at most, at least.
 FIRST, LARGEST, LEAST = 1e-2, 1e2, 1e-6
-#: Factors on it after a position was reached, or not.
-EASED, TIGHTENED = 0.25, 8.0
+#: Factors on it after a position was reached in few corrections, in more, or not at all; limit of
+#: few.
+EASED, KEPT, TIGHTENED, FEW = 0.25, 0.5, 8.0, 6
 #: Largest distance between positions, in shortest edges of a slave surface.
 FARTHEST = 0.5
 
@@ -133,7 +134,7 @@ class _Creep:
             out = self._from_rest()
             if out.converged or not self.moved:
                 return out
-        share = FIRST
+        share, tries = FIRST, 0
         while self.corrections < MOST and share <= LARGEST:
             out = self._place(share)
             moved = self._largest(out.u - self.z)
@@ -145,13 +146,17 @@ class _Creep:
             if self._leaves(out.u):
                 break
             self.z, self.left = out.u, np.zeros_like(self.left)
-            share *= EASED
+            share *= EASED if out.iterations <= FEW else KEPT
             if share >= LEAST:
                 continue
             out = self._place(0.0)
-            if out.converged and not self._leaves(out.u):
+            if out.converged and self._leaves(out.u):
+                break
+            if out.converged:
                 return self._found(out)
-            break
+            share, tries = LEAST * TIGHTENED**2, tries + 1
+            if tries > 2:
+                break
         return self._missed(out)
 
     def _found(self, out: Outcome) -> Outcome:
@@ -174,19 +179,22 @@ class _Creep:
         begin, left = self.z, self.left
         reason = "a damped motion did not bring the bodies to rest"
         out: Outcome = Outcome(False, begin, None, reason=reason)
-        rest = come_to_rest(problem, begin[:n], left, self.step_time, self.edge)
-        if rest is None:
-            term.revert()
-            return self._missed(out)
-        self.moved = True
-        self.z, self.left = np.concatenate([rest.u, rest.multipliers]), np.zeros_like(left)
-        problem.last = [states.copy() for states in rest.states]
-        term.slip_start = rest.u  # friction of the motion is over
-        out = self._place(0.0)
-        if out.converged and out.at is not None:
-            out.reason = problem.refuse(out.at, out.u)
-            out.converged = not out.reason
-        return self._found(out) if out.converged else out
+        for remains in REMAINS:
+            rest = come_to_rest(problem, begin[:n], left, self.step_time, self.edge, remains)
+            if rest is None:
+                term.revert()
+                continue
+            self.moved = True
+            self.z, self.left = np.concatenate([rest.u, rest.multipliers]), np.zeros_like(left)
+            problem.last = [states.copy() for states in rest.states]
+            term.slip_start = rest.u  # friction of the motion is over
+            out = self._place(0.0)
+            if out.converged and out.at is not None:
+                out.reason = self.problem.refuse(out.at, out.u)
+                out.converged = not out.reason
+            if out.converged:
+                return self._found(out)
+        return out if self.moved else self._missed(out)
 
     def _largest(self, change: Floats) -> float:
         """Largest displacement of a change of the unknowns [length]."""
@@ -245,6 +253,9 @@ UPDATE = 50
 SAFETY = 2.0
 #: Smallest mass over the largest one, for dofs without stiffness.
 LEAST_MASS = 1e-6
+#: Fraction of an overlap that remains after an increment: all of it, as in central differences, or
+#: less. A gap that jumps back and forth has no position of rest if the overlap is removed.
+REMAINS = (1.0, 0.95)
 #: Longest displacement of supports in an increment, in shortest edges of a slave surface.
 LONGEST_STEP = 0.02
 
@@ -270,6 +281,7 @@ class _Forces(ForwardContact):
     """Contact of a motion that is not part of the analysis: nothing is counted or committed."""
 
     multipliers: Floats
+    remains = 1.0
 
     def _count(self, *_: object) -> None:
         """No work."""
@@ -284,6 +296,7 @@ class _Forces(ForwardContact):
         time: float,
     ) -> None:
         self.multipliers = multipliers
+        self.depth = [self.remains * depth for depth in self.depth]
 
 
 def come_to_rest(
@@ -292,6 +305,7 @@ def come_to_rest(
     left: Floats,
     step_time: float,
     edge: float,
+    remains: float = 1.0,
 ) -> Rest | None:
     """Move from a position until the bodies rest; None if they do not.
 
@@ -304,6 +318,8 @@ def come_to_rest(
         Step time of the loads and of the position of rest.
     edge : float
         Shortest edge of the slave surfaces [length].
+    remains : float
+        Fraction of an overlap that remains after an increment.
     """
     system = problem.system
     if system.link.couples:
@@ -311,6 +327,7 @@ def come_to_rest(
     held = system.conditions.constrained
     u, v = u.copy(), np.zeros_like(u)
     contact = _Forces(problem.term, Energies(system), 1.0)
+    contact.remains = remains
     parts = max(1, int(np.ceil(float(np.abs(left).max()) / (LONGEST_STEP * edge))))
     mass = np.ones_like(u)
     kinetic, least, since = 0.0, np.inf, parts
@@ -353,4 +370,4 @@ def _stable_mass(system: System, values: Floats) -> Floats:
     return out
 
 
-__all__ = ["Rest", "come_to_rest", "relax"]
+__all__ = ["REMAINS", "Rest", "come_to_rest", "relax"]
