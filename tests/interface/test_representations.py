@@ -106,8 +106,9 @@ def test_no_representation_is_long(results: ct.Results) -> None:
     # Those have a few numbers each and no arrays.
     small = {
         "Amplitude", "ArcLength", "BodyForce", "CowperSymonds", "CriticalPoint",
-        "DecayingFriction", "DisplacementControl", "Expansion", "FrictionTable", "InitialStress", "InitialTemperature", "Iteration",
-        "Modes", "Norton", "PressureLaw", "RateCurves", "SteadyState", "Temperature", "Visco",
+        "DecayingFriction", "DisplacementControl", "Expansion", "FrictionTable", "InitialStress",
+        "InitialTemperature", "Iteration", "Modes", "Norton", "PressureLaw", "RateCurves",
+        "SteadyState", "Temperature", "Visco",
         "Voce", "WLF", "YieldRatio",
     }  # fmt: skip
     materials = {c.__name__ for c in public if issubclass(c, Material)}

@@ -140,8 +140,9 @@ Friction = float | DecayingFriction | FrictionTable
 
 def largest(friction: Friction) -> float:
     """Largest coefficient of friction that is reached."""
-    most: float = getattr(friction, "largest", friction)
-    return most
+    if isinstance(friction, DecayingFriction | FrictionTable):
+        return friction.largest
+    return friction
 
 
 def coefficients(friction: Friction, rate: Floats, pressure: Floats) -> Floats:
