@@ -158,7 +158,7 @@ def _keeps_contact(state: State) -> bool:
         through = seen & (terms.gap < -OVER * state.system.length * pair.full)
         bad = (own == OPEN) & through
         bad |= (own != OPEN) & (p < -most)
-        if pair.friction:
+        if pair.rubs:
             bad |= (own == SLIPPING) | (np.abs(q) > pair.friction * p + most)
         if bad.any():
             return False
