@@ -41,6 +41,10 @@ NONE = 1e-8
 #: Change of the pressure of a redundant corner per error of its gap, relative to its stiffness: it
 #: scales corrections, and is zero in what they converge to.
 REDUNDANT = 1e-3
+#: Share of its slip that this change takes up where the slip follows from those of other nodes: the
+#: constraint cannot be met, and its traction would grow with every iteration; and the largest such
+#: slip, in edges.
+FOLLOWS, FOLLOWS_CLOSELY = 0.5, 1e-3
 #: Covered fraction of its area below which a node passes its part to a neighbor.
 WEAK = 0.2
 #: And that above which it takes it back for good.
@@ -142,6 +146,8 @@ class Pair:
             right[ends[:, 0]], left[ends[:, 1]] = ends[:, 1], ends[:, 0]
             self.beside = (left, right)
         self.slid = np.zeros(self.n)  # slip so far [length]
+        #: Corners that stick since what is beside them does, and the states with which they do.
+        self.follows: tuple[Bools, NDArray[np.int8] | None] = np.zeros(self.n, bool), None
         self.friction_work = 0.0
         #: What of it the trapezoidal rule misses, of tractions that grew before the surfaces slid.
         self.beyond_trapezoid = 0.0
@@ -492,7 +498,8 @@ class Pair:
             stiffness = np.where(self.weightless(q), by_sign, stiffness)
         own = self.full, self.area, stiffness, begin, self.adhering
         friction = self.friction if self.rubs else None
-        return terms.gap, terms.slip, terms.area, *own, friction
+        slip = np.where(self.follows[0], 0.0, terms.slip)
+        return terms.gap, slip, terms.area, *own, friction
 
     def weightless(self, q: Floats) -> Bools:
         """Constraints whose slave node has no stiffness that counts beside a shear traction."""
@@ -581,7 +588,8 @@ class Pair:
             less = REDUNDANT * self.full[backed] / self.stiffness[backed]
             found[0][backed] -= less
             stuck = state[backed] == CLOSED
-            found[2][backed[stuck]] -= less[stuck]
+            loose = np.where(self.follows[0][backed], 1.0 / REDUNDANT, 1.0)
+            found[2][backed[stuck]] -= (loose * less)[stuck]
         for k in np.flatnonzero(self.resting):
             # Nothing depends on the shear traction there: that of what sticks stays.
             if state[k] == CLOSED:
@@ -598,6 +606,38 @@ class Pair:
         closed = (beside >= 0) & (state[self.owner[beside]] != OPEN)
         out: Ints = corner[closed.any(axis=1) & (state[corner] != OPEN)]
         return out
+
+    def keep_following(self, states: NDArray[np.int8]) -> None:
+        """Forget which corners follow from others, unless the states are those they follow with."""
+        if self.follows[1] is not None and not np.array_equal(states, self.follows[1]):
+            self.follows = np.zeros(self.n, bool), None
+
+    def find_following(self, terms: Terms, states: NDArray[np.int8], change: Floats) -> bool:
+        """Look for corners whose slip follows from those of the nodes beside them.
+
+        Parameters
+        ----------
+        states : ndarray of int, shape (n,)
+            Of the correction.
+        change : ndarray, shape (n,)
+            Of the shear tractions in it.
+
+        Returns
+        -------
+        bool
+            Whether there are others than before: the correction is made again without their slips.
+        """
+        k = self.backed(terms, states)
+        k = k[(states[k] == CLOSED) & ~self.follows[0][k]]
+        taken = REDUNDANT * self.full[k] / self.stiffness[k] * np.abs(change[k])
+        slip = np.abs(terms.slip[k])
+        distance = slip / self.full[k]
+        small = (distance > self.noise) & (distance < FOLLOWS_CLOSELY * self.edge)
+        k = k[small & (taken > FOLLOWS * slip)]
+        if len(k):
+            self.follows = self.follows[0].copy(), states.copy()
+            self.follows[0][k] = True
+        return bool(len(k))
 
     def add_forces(
         self, terms: Terms, dofs: Ints, p: Floats, q: Floats, force: Floats, size: Floats | None
