@@ -76,7 +76,7 @@ def force(model: ct.Model) -> float:
         ("CPE4", 0.5, 1030.22),
         ("CPE4", -0.3, -196.1538),
         ("CPS4R", 0.2, 264.0),
-        ("CPE4I", -0.3, -196.1538),
+        ("CPE4R", -0.3, -196.1538),
     ],
 )
 def test_elastic_decks_of_calculix(tmp_path, type_, move, calculix, one):

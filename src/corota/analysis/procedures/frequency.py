@@ -181,7 +181,7 @@ def _scalars(lin: LinearMotion, modes: Modes) -> dict[str, float]:
     shapes = np.array([system.from_nodes(shape) for shape in modes.shapes]).T
     for axis in (0, 1):
         rigid = system.at_nodes(np.where(system.component == axis, 1.0, 0.0))
-        share = (shapes.T @ system.product(lin.mass_values, rigid)) ** 2 / total
+        share = (shapes.T @ system.product(lin.mass_values, rigid)) ** 2 / (total or 1.0)
         for k, value in enumerate(share, start=1):
             scalars[f"effective mass {'xy'[axis]} {k}"] = float(value)
     return {**scalars, **_participation(lin, shapes)}

@@ -221,6 +221,13 @@ class Deck:
         """Record an error at a field of a data line."""
         self.error(card, row.at(index), message, text=row.text, hint=hint)
 
+    def turned(self, target: str) -> str | None:
+        """Reference node whose rotation a rotation node is; ``target`` is it, or a set of it."""
+        found = self.scope.nsets.get(key(target))
+        if found is not None and len(found.entries) == 1 and len(found.entries[0].labels) == 1:
+            target = str(found.entries[0].labels[0])
+        return self.rotation_nodes.get(key(target))
+
     def note(self, text: str) -> None:
         """Note what was ignored, repaired or assumed, once."""
         text = numerals.clipped(text)

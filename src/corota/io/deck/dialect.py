@@ -3,7 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
+
+from corota.io.deck.lexer import key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -11,7 +14,34 @@ if TYPE_CHECKING:
     from corota.io.deck.lexer import Card
 
 #: Cards that Abaqus has and CalculiX has not.
-OF_ABAQUS = frozenset({"PART", "ASSEMBLY", "INSTANCE", "PREPRINT"})
+OF_ABAQUS = frozenset(
+    {
+        "PART",
+        "ASSEMBLY",
+        "INSTANCE",
+        "PREPRINT",
+        "PARAMETER",
+        "NGEN",
+        "NFILL",
+        "NCOPY",
+        "ELGEN",
+        "ELCOPY",
+        "SYSTEM",
+        "RELEASE",
+        "CONNECTORSECTION",
+        "SECTIONCONTROLS",
+        "HOURGLASSSTIFFNESS",
+        "TRANSVERSESHEARSTIFFNESS",
+        "ENERGYOUTPUT",
+        "BULKVISCOSITY",
+        "MONITOR",
+    }
+)
+#: Types of elements that Abaqus has and CalculiX has not: hybrid ones, those with incompatible
+#: modes, cubic and quadratic planar beams, rigid sides and connectors.
+ELEMENTS_OF_ABAQUS = re.compile(
+    r"CP[ES]\d(R?H|IH?|M|MH)|B2[23]H?|B33H?|PIPE2[12]H?|T2D3H?|R2D2|CONN2D2"
+)
 #: Parameters that Abaqus has and CalculiX has not, by card.
 PARAMETERS_OF_ABAQUS = {
     "OUTPUT": ("FIELD", "HISTORY"),
@@ -20,9 +50,11 @@ PARAMETERS_OF_ABAQUS = {
 
 
 def find_dialect(cards: Iterable[Card]) -> str:
-    """``"abaqus"`` if a card or parameter is of Abaqus alone, otherwise ``"calculix"``."""
+    """``"abaqus"`` if a card, parameter or element is of Abaqus alone, otherwise ``"calculix"``."""
     for card in cards:
         if card.keyword in OF_ABAQUS:
+            return "abaqus"
+        if card.keyword == "ELEMENT" and ELEMENTS_OF_ABAQUS.fullmatch(key(card.value("TYPE"))):
             return "abaqus"
         if any(card.has(name) for name in PARAMETERS_OF_ABAQUS.get(card.keyword, ())):
             return "abaqus"

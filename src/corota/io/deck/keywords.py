@@ -84,10 +84,8 @@ _TABLE: dict[str, Keyword] = {
     ),
     "SYSTEM": Keyword(card("generate.system"), place="model"),
     "ELEMENT": Keyword(card("mesh.element"), "TYPE ELSET", place="model"),
-    "NSET": Keyword(
-        card("mesh.nset"), "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED", place="model"
-    ),
-    "ELSET": Keyword(card("mesh.elset"), "ELSET GENERATE INSTANCE INTERNAL", place="model"),
+    "NSET": Keyword(card("mesh.nset"), "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED"),
+    "ELSET": Keyword(card("mesh.elset"), "ELSET GENERATE INSTANCE INTERNAL"),
     "SURFACE": Keyword(
         card("mesh.surface"),
         "NAME TYPE INTERNAL FILLETRADIUS COMBINE",

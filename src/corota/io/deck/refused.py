@@ -17,6 +17,7 @@ IGNORED: dict[str, str] = {
     "NOANALYSIS": "use the command check",
     "PRINT": "it controls the message file",
     "FILEFORMAT": "it controls the result file of another program",
+    "SOLVERCONTROLS": "the linear solver is direct",
     "USERSUBROUTINE": "no user subroutine is called",
     "FIELD": "no data depend on field variables",
     "SOLUTIONTECHNIQUE": "Newton's method has the exact tangent",

@@ -108,7 +108,7 @@ def beam_section(deck: Deck, card: Card) -> None:
     """``*BEAM SECTION, ELSET=, MATERIAL=, SECTION=RECT, CIRC or PIPE``: sizes; first axis."""
     elset, material = deck.required(card, "ELSET"), deck.required(card, "MATERIAL")
     kind = deck.choice(card, "SECTION", SIZES, "")
-    rows = _common(deck, card, 3 if card.has("TEMPERATURE") else 2)
+    rows = _common(deck, card, 3)
     if rows is None or not kind:
         if not kind and not card.has("SECTION"):
             deck.error(card, card.where, f"SECTION= is missing: {', '.join(SIZES)}")

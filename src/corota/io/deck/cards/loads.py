@@ -51,8 +51,9 @@ def cload(deck: Deck, card: Card) -> None:
         if dof is None or value is None or not row.get(0):
             continue
         target = row.get(0)
-        if key(target) in deck.rotation_nodes and dof == 3:
-            target, dof = deck.rotation_nodes[key(target)], 6
+        turned = deck.turned(target)
+        if turned is not None and dof == 3:
+            target, dof = turned, 6
         if dof in (3, 4, 5):
             if value != 0.0:
                 deck.row_error(card, row, 1, f"a planar model takes no load in dof {dof}")

@@ -173,8 +173,10 @@ def loads_of(deck: Deck, card: Card, kind: LoadKind) -> StepDraft | None:
 def keeps_preload(deck: Deck, card: Card, now: StepDraft) -> bool:
     """Whether a step starts from stresses and displacements of the steps before.
 
-    As in CalculiX, ``*STEP, PERTURBATION`` requests it.
+    As in CalculiX, ``*STEP, PERTURBATION`` requests it; in Abaqus, a step before with NLGEOM does.
     """
+    if deck.dialect == "abaqus":
+        return any(step.nlgeom for step in deck.steps if step is not now)
     # Linear load cases leave the structure as it was.
     kept = now.card.has("PERTURBATION") and not any(step.perturbs for step in deck.steps)
     if len(deck.steps) > 1 and not kept:

@@ -80,8 +80,9 @@ def _supports(deck: Deck, card: Card, row: Row) -> list[Draft]:
             return []
         dofs, value = tuple(range(first, last + 1)), number
     found = []
-    if key(row.get(0)) in deck.rotation_nodes:
-        return _turns(deck, card, row, dofs, value)
+    turned = deck.turned(row.get(0))
+    if turned is not None:
+        return _turns(deck, card, row, turned, dofs, value)
     for dof in dofs:
         if dof in (1, 2, 6):
             index = {1: 0, 2: 1, 6: 2}[dof]
@@ -97,9 +98,10 @@ def _supports(deck: Deck, card: Card, row: Row) -> list[Draft]:
     return found
 
 
-def _turns(deck: Deck, card: Card, row: Row, dofs: tuple[int, ...], value: float) -> list[Draft]:
+def _turns(
+    deck: Deck, card: Card, row: Row, target: str, dofs: tuple[int, ...], value: float
+) -> list[Draft]:
     """Supports of a rotation node: its dof 3 is the rotation of the reference node."""
-    target = deck.rotation_nodes[key(row.get(0))]
     if value != 0.0 and any(dof != 3 for dof in dofs):
         deck.row_error(card, row, 3, "only dof 3 of a rotation node turns in the plane")
         return []
