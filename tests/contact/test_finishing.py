@@ -175,17 +175,6 @@ def test_an_impact_in_fixed_increments_is_relaxed():
     assert row["residual"] < 1e-8
 
 
-@pytest.mark.parametrize("number", [1368, pytest.param(862, marks=pytest.mark.slow)])
-def test_a_plastic_collapse_is_followed_to_its_limit_point(number):
-    """Arc length takes over from load control with the tangent of flow, not the elastic one.
-
-    From there the path seemed to turn round at once, and the run stopped before its limit point.
-    """
-    row = run(number, limit=60, size=0.5)
-    assert row["why"].startswith("limit point")
-    assert (row["reason"], row["right"]) == ("limit point", True)
-
-
 def test_a_stop_behind_an_unstable_equilibrium_says_so():
     said = unstable(SimpleNamespace(negative=1))
     assert "The last equilibrium is unstable (negative pivots of the tangent: 1)" in said

@@ -154,9 +154,6 @@ class PathStepper:
         system, step, state = self.system, self.step, self.state
         start = self.along.start(state.u)
         at = self.along.evaluate(start, self.factor * step.period)
-        if self.takes_over and state.at is not None:
-            # The tangent of flow: what is on its yield surface has the elastic one.
-            at.values[:] = state.at.values
         force, move = system.load_rate(state.u)
         heats = system.free.largest(system.conditions.heating) > 0.0
         if not (np.any(force[~system.conditions.constrained]) or np.any(move) or heats):
