@@ -267,7 +267,9 @@ def _of_script(path: Path) -> list[ct.Results]:
         return results
 
     Analysis.run = keep  # type: ignore[method-assign]
-    argv = sys.argv
+    argv, path_before = sys.argv, sys.path
+    # An example may import from the file beside it.
+    sys.path = [str(path.parent), *sys.path]
     try:
         with tempfile.TemporaryDirectory() as folder, chdir(folder):
             sys.argv = [str(path)]
@@ -276,7 +278,7 @@ def _of_script(path: Path) -> list[ct.Results]:
         print(f"{path.name}: stopped: {str(error)[:100]}")
     finally:
         Analysis.run = run  # type: ignore[method-assign]
-        sys.argv = argv
+        sys.argv, sys.path = argv, path_before
     whole = [r for r in found if r.frames and r.frames[-1].fields]
     return [whole[0], whole[-1]] if len(whole) > 1 else whole
 

@@ -299,8 +299,10 @@ class FileFrames(Sequence[Frame]):
             moving["T"] = self.at_points("temperature", number)
         for attribute, names in (("C", CONTACT), ("H", HARMONIC)):
             if any(name in self._file["VTKHDF/PointData"] for name in names):
-                columns = [self._or_zero(name, number) for name in names]
-                moving[attribute] = np.column_stack(columns)
+                columns = np.column_stack([self._or_zero(name, number) for name in names])
+                # Frames of other procedures have zeros in place of amplitudes.
+                if attribute == "C" or columns.any():
+                    moving[attribute] = columns
         fields = [self._fields(block, number) for block in range(len(self._blocks))]
         return Frame(
             int(scalars["step"]),

@@ -141,8 +141,10 @@ def _frame(mesh: Mesh, data: dict[str, Any], number: int) -> Frame:
     }
     if "temperature" in at:
         moving["T"] = at["temperature"]
-    if CONTACT[0] in at:
-        moving["C"] = np.column_stack([at[name] for name in CONTACT])
+    for letter in ("C", "H"):  # contact at nodes, amplitudes and phases
+        columns = [row.stored for row in TABLE.values() if row.frame == letter]
+        if columns[0] in at:
+            moving[letter] = np.column_stack([at[name] for name in columns])
     stems = tuple(f"{column}: " for column in CONTACT)
     return Frame(
         1,
