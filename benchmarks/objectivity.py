@@ -162,9 +162,9 @@ def stack(method: str, role: str) -> Problem:
 
 def folded(method: str, _: str) -> Problem:
     """A U whose arms are pushed together: a boundary that meets itself."""
-    arms = ct.mesh.annulus(0.3, 0.5, 2, 10, angle=180.0, start=90.0)
+    # No node lies opposite another, nor on the axis of the fold: there rounding chooses the edge.
+    arms = ct.mesh.annulus(0.3, 0.5, 2, 11, angle=180.0, start=90.0)
     upper = ct.mesh.rectangle(2.0, 0.2, 12, 2, origin=(0.0, 0.3))
-    # No node lies opposite another: there rounding chooses the edge.
     lower = ct.mesh.rectangle(2.0, 0.2, 11, 2, origin=(0.0, -0.5))
     mesh = ct.mesh.merge(arms, upper, lower)
     mesh.edge_sets["boundary"] = mesh.boundary_edges()

@@ -21,6 +21,8 @@ CASES = [
     (objectivity.rolled, "Q4I"),
     (objectivity.stack, "upper slave"),
     (objectivity.stack, "lower slave"),
+    (objectivity.folded, "on itself"),
+    (objectivity.wire, "on a block"),
 ]
 
 

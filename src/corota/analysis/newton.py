@@ -248,8 +248,10 @@ def newton(
         if iteration > 1 and size > DIVERGED * max(best, 1e-6):
             outcome.reason = f"diverges: the residual grew to {size:.1e}"
             return outcome
-        waited = 0 if size < PROGRESS * least else waited + 1
-        least = min(least, size)
+        if size < PROGRESS * least:
+            least, waited = size, 0  # many small steps are progress as well
+        else:
+            waited += 1
         if waited == settings.patience > 0:
             outcome.reason = f"no progress in {waited} iterations (residual {size:.1e})"
             return outcome

@@ -3,8 +3,7 @@
 The scale of a residual must not grow with the failure that it detects. It is the largest of
 external forces, element forces, contact forces and inertia forces, here and in the committed
 state. A residual above the tolerance counts as rounding if it is at most the effect of rounding of
-the
-positions with the dof's own stiffness, and never above a millionth of the scale.
+the positions of all dofs, by the tangent, and never above a millionth of the scale.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -161,11 +160,12 @@ class Scales:
             return np.inf, np.inf
         left = np.abs(at.reaction)
         left[self.conditions.constrained] = 0.0
-        stiffness = self._diagonal(at.values)
-        if at.added is not None:
-            stiffness = stiffness - at.added
         turn = system.is_rotation
-        noise = EPS * moved * np.abs(stiffness) / np.where(turn, system.cell_size, 1.0)
+        # The force of a dof rounds with the positions of all dofs of its elements.
+        rounding = EPS * moved / np.where(turn, system.cell_size, 1.0)
+        noise = system.pattern.multiply(np.abs(at.values), rounding)
+        if at.added is not None:
+            noise = noise - at.added * rounding
         noise = at.link.gather_sizes(noise)
         above = left > np.where(turn, self.tolerance * moment, self.tolerance * force)
         over, turn = left[above] / np.maximum(noise[above], TINY), turn[above]

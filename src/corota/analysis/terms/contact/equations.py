@@ -39,6 +39,8 @@ MAX_LISTED = 8
 MAX_EXTRA_CONTACT_ITERATIONS = 24
 #: Iterations without progress before an increment is cut: few that take more converge.
 PATIENCE = 8
+#: Residual below which states that do not change any more are those of the end.
+SETTLED = 1e-6
 #: Displacement of an increment, relative to its first correction, that counts as a jump, driven by
 #: supports and by forces.
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
@@ -70,6 +72,7 @@ class ContactEquations(ContactProblem):
         if norms.force > before:
             node = self.term.pairs[pair].nodes[constraint]
             norms.worst = int(self.system.start[node])
+        self.size = norms.size
         if self.corrections:  # before the first one, supports may not have moved
             self.waited = 0 if norms.size < PROGRESS * self.least else self.waited + 1
             self.least = min(self.least, norms.size)
@@ -90,7 +93,7 @@ class ContactEquations(ContactProblem):
             if corrected is not None:
                 return corrected
         self.pivoting = self.pivoting or self.waited >= WAITED
-        if self.pivoting:
+        if self.pivoting and not self.settles(at):
             self.freeze()
             found = pivoted(self, at, right_sides)
             if found is not None:
@@ -106,7 +109,21 @@ class ContactEquations(ContactProblem):
                 return self.moved(z), -1
         z, negative = self.columns(at, right_sides, self.chosen(at.contact_state))
         self.stage = ""
-        return self.moved(z[:, 0]), negative
+        return self.moved(z[:, 0]), -1 if self.pivoting else negative
+
+    def settles(self, at: Evaluation) -> bool:
+        """Whether pivoting has found the states, and only digits are missing.
+
+        It adds up the whole tractions of a correction, which leaves their rounding.
+        """
+        if self.last is None or self.size > SETTLED:
+            return False
+        return all(
+            np.array_equal(pair.states(terms, p, q, last), last)
+            for (pair, terms, (p, q)), last in zip(
+                self.pairs(at.contact_state), self.last, strict=True
+            )
+        )
 
     def inherit_kink(self) -> None:
         """Begin at the kink at which the committed equilibrium lies, if there is one.

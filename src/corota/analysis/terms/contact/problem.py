@@ -89,6 +89,8 @@ class ContactProblem:
         How often the state of each constraint has changed.
     sliding, pivoted, corrections : int
         Bodies that slid, corrections by pivoting, and all corrections so far.
+    size, least : float
+        Residual of the last iterate, and the least one so far.
     waited : int
         Iterations without progress.
     pivoting : bool
@@ -130,7 +132,7 @@ class ContactProblem:
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.term.pairs]
         self.sliding = self.corrections = self.pivoted = 0
         self.pivoting = False
-        self.least, self.waited = np.inf, 0
+        self.size, self.least, self.waited = np.inf, np.inf, 0
         self.stage = ""  # how the last correction was found
         self.relaxing = False  # whether the bodies may move to another equilibrium
         #: Previous position in relaxation, for the tunneling check.

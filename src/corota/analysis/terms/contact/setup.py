@@ -260,7 +260,8 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
             )
     except ValueError as error:
         raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
-    core.carry(carrier(system, slave), carrier(system, master))
+    # A boundary that meets itself is both sides; a rigid master knows its own rotation.
+    core.carry(carrier(system, slave), carrier(system, master or slave))
     return core, slave, master, reach, depth
 
 
