@@ -13,7 +13,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from corota.analysis.increments import Increments
+from corota.analysis.increments import CUT, Increments
 from corota.errors import ConvergenceError, Interrupted
 from corota.results.observer import Iteration
 
@@ -208,12 +208,15 @@ class Attempt:
         None where nothing was solved.
     reason : str
         Why it is refused; empty if it is accepted.
+    share : float
+        Share of its size that is tried next, if it is refused.
     """
 
     target: float
     outcome: Outcome
     contact: ContactIncrement | None
     reason: str = ""
+    share: float = CUT
 
 
 class NewtonStepper(ABC):
@@ -303,7 +306,7 @@ class NewtonStepper(ABC):
                 attempt.reason = f"{attempt.reason}; {near}"
             loop.count("cut-backs")
             loop.state.failed = attempt.outcome
-            end = control.cut(attempt.target)
+            end = control.cut(attempt.target, attempt.share)
             rescued = self.rescue(attempt, end)
             if rescued is not None:
                 loop.count("iterations", rescued.outcome.iterations)

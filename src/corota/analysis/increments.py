@@ -59,6 +59,19 @@ class Increments:
         # A small rest at the end would cost an extra increment.
         return stop if self.size >= left * (1.0 - 1e-6) else self.time + self.size
 
+    @property
+    def shortest(self) -> float:
+        """Increment below which a local error cuts no further [time].
+
+        That is the smallest one with which the largest ones reach the end of the step and, when
+        half of the increments are used, the mean of those that are left until there.
+        """
+        step = self.step
+        left, rest = max(step.max_increments - self.number, 1), step.period - self.time
+        if 2 * left > step.max_increments:
+            return max(step.smallest_increment, rest - (left - 1) * step.largest_increment)
+        return max(step.smallest_increment, rest / left)
+
     def accept(self, time: float, iterations: int) -> None:
         """Continue after a converged attempt."""
         self.time = time
@@ -69,13 +82,13 @@ class Increments:
             self.size = min(GROWTH * self.size, self.step.largest_increment)
             self.easy = 0
 
-    def cut(self, tried: float) -> str:
-        """Shorten after a failed attempt at a time; returns why that is impossible, or ''."""
+    def cut(self, tried: float, share: float = CUT) -> str:
+        """Shorten to a share of a failed attempt at a time; returns why that cannot be, or ''."""
         self.easy = 0
         if self.step.fixed_increments:
             return "the increments are fixed (DIRECT) and cannot be cut"
         self.attempt += 1
-        self.size = CUT * (tried - self.time)
+        self.size = share * (tried - self.time)
         if self.attempt > MAX_ATTEMPTS:
             return f"{MAX_ATTEMPTS} attempts failed"
         if self.size < self.step.smallest_increment:

@@ -440,10 +440,11 @@ class Visco(Static):
 
     Parameters
     ----------
-    creep_tolerance : float
+    creep_tolerance : float, optional
         Largest error of the creep strain in an increment at any point: the difference between the
         creep by the stress at its start and that of the increment. Larger increments are cut back;
-        after smaller errors they grow. 0 for no limit.
+        after smaller errors they grow. By default 0.003 of the largest elastic strain of what
+        creeps, unless increments are fixed; 0 for no limit.
 
     Notes
     -----
@@ -451,14 +452,15 @@ class Visco(Static):
     """
 
     ramp: bool = False
-    creep_tolerance: float = 0.0
+    creep_tolerance: float | None = None
 
     lasting: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.path is not None:
             raise InputError("a step of creep follows its time, not a path", self.where)
-        if not (math.isfinite(self.creep_tolerance) and self.creep_tolerance >= 0.0):
+        tolerance = self.creep_tolerance
+        if tolerance is not None and not (math.isfinite(tolerance) and tolerance >= 0.0):
             raise InputError(
                 f"creep_tolerance must be >= 0, not {self.creep_tolerance}", self.where
             )

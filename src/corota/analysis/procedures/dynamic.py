@@ -206,22 +206,9 @@ class DynamicStepper(NewtonStepper):
                 moved, meets = end.u - begin.u, self.approach.meets
                 missed = contact.impact_error(moved, energy, step.error_tolerance, meets)
                 self.error = max(self.error, missed)
-            if self.error > 1.0 and CUT * dt >= self._shortest:
+            if self.error > 1.0 and CUT * dt >= self.control.shortest:
                 reason = f"local error {self.error:.2g} times the allowed one"
         return Attempt(target, outcome, contact, reason)
-
-    @property
-    def _shortest(self) -> float:
-        """Increment below which the local error cuts no further [time].
-
-        That is the smallest one and, when half of the increments are used, the mean of those that
-        are left until the end of the step.
-        """
-        step, control = self.step, self.control
-        left = max(step.max_increments - control.number, 1)
-        if 2 * left > step.max_increments:
-            return step.smallest_increment
-        return max(step.smallest_increment, (step.period - control.time) / left)
 
     def _note_error(self) -> None:
         """Tell once that the increments are too long for the motion."""
@@ -293,7 +280,7 @@ class DynamicStepper(NewtonStepper):
         control.accept(target, outcome.iterations)
         if not step.fixed_increments:
             grown = AIM * dt * math.sqrt(1.0 / max(self.error, 1e-6))
-            size = max(min(max(grown, LEAST * size), MOST * size), self._shortest)
+            size = max(min(max(grown, LEAST * size), MOST * size), self.control.shortest)
             control.size = min(size, step.largest_increment)
             if self.error > 1.0 and not system.opens:
                 self._note_error()

@@ -13,11 +13,14 @@ import numpy as np
 
 from corota.analysis.failure import ElementFailure
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
+from corota.analysis.increments import CUT, SAME
 from corota.analysis.newton import Outcome, Settings
 from corota.analysis.procedures.carried_bodies import carried_bodies
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
+from corota.model.material_table import MaterialTable
+from corota.model.rates import Norton
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.analysis.terms.contact.newton import ContactIncrement
+    from corota.model.materials import Material
     from corota.model.steps import Static
 
     Floats = NDArray[np.float64]
@@ -52,8 +56,12 @@ STALLED = 3
 ELASTIC = 0.01
 #: Change of a force, relative to the largest, that is none.
 UNCHANGED = 1e-9
-#: Share of the increment that would have the allowed error of creep, and largest growth.
-CREEP_SAFETY, MOST_GROWTH = 0.9, 4.0
+#: Error of the creep strain in an increment over the largest elastic strain, by default.
+CREEP_ERROR = 0.003
+#: Share of the increment that would have the allowed error of creep, and limits of its change.
+CREEP_SAFETY, LEAST_SHARE, MOST_GROWTH = 0.9, 1e-3, 4.0
+#: Error over the allowed one that is none, and one that is told.
+LEAST_EXCESS, MUCH_EXCESS = 1e-12, 10.0
 #: Note of the iterations of such an attempt.
 UNLOADING = "line search from the elastic tangent"
 #: And of those that begin with bodies turned by their supports.
@@ -109,10 +117,14 @@ class StaticStepper(NewtonStepper):
         self.moved: np.ndarray[tuple[int], np.dtype[np.float64]] | None = None
         #: Growth of the plastic strain in the last attempt.
         self.grown = 0.0
-        #: Error of the creep strain in the last attempt, and the largest that is allowed.
-        self.erred, self.creep_tolerance = 0.0, getattr(step, "creep_tolerance", 0.0)
-        #: The largest error of the increments so far.
-        self.creep_error = 0.0
+        #: Largest error of the creep strain that is allowed, if any; none: by the elastic strain.
+        self.creep_tolerance: float | None = getattr(step, "creep_tolerance", 0.0)
+        if step.fixed_increments:
+            self.creep_tolerance = self.creep_tolerance or 0.0
+        #: Error of the creep strain in the last attempt, and over the allowed one.
+        self.erred, self.excess = 0.0, 0.0
+        #: The largest error of the increments so far, and over the allowed one.
+        self.creep_error, self.creep_excess = 0.0, 0.0
         self.path_took_over = False
         #: Step times between which the last attempt lost stability.
         self.passed: tuple[float, float] | None = None
@@ -123,6 +135,13 @@ class StaticStepper(NewtonStepper):
         blocks = loop.system.blocks
         #: Whether the stress of any material depends on the strain path.
         self.remembers = any(block.section.material.remembers for block in blocks)
+        #: Whether the error of creep is compared to elastic strains, and the largest of these.
+        self.measures = self.creep_tolerance is None and any(
+            _soft(block.section.material) for block in blocks
+        )
+        self.elastic = 0.0
+        if self.measures and not self.state.resumes:
+            self.measure_creep()
 
     @property
     def finished(self) -> bool:
@@ -133,13 +152,18 @@ class StaticStepper(NewtonStepper):
         """Take the state of a checkpoint."""
         loop = self.state.resume(self.kind, control=self.control)
         self.rates, self.moved = (loop["first"], loop["rate"]), loop["moved"]
-        self.creep_error = loop["creep error"]
+        self.creep_error, self.creep_excess = loop["creep error"], loop["creep excess"]
+        self.elastic = loop["elastic strain"]
 
     def memory(self) -> dict[str, object]:
         """What a checkpoint holds beside the committed state."""
         first, rate = self.rates
         memory = {"control": self.control, "first": first, "rate": rate, "moved": self.moved}
-        return memory | {"creep error": self.creep_error}
+        return memory | {
+            "creep error": self.creep_error,
+            "creep excess": self.creep_excess,
+            "elastic strain": self.elastic,
+        }
 
     # -- attempts ----------------------------------------------------------------------
 
@@ -178,14 +202,10 @@ class StaticStepper(NewtonStepper):
             else:
                 again.iterations += outcome.iterations
                 outcome, contact = again, its_contact
-        self.grown = self.erred = 0.0
+        self.grown = self.erred = self.excess = 0.0
+        share = CUT
         if outcome.converged and not outcome.reason and step.lasting:
-            self.erred = system.elements.creep_error()
-            if self.erred > self.creep_tolerance > 0.0:
-                outcome.reason = (
-                    f"the creep strain of the increment has an error of {self.erred:.3g}, "
-                    f"{self.creep_tolerance:g} is allowed"
-                )
+            outcome.reason, share = self.check_creep(target)
         if outcome.converged and not outcome.reason and step.plastic_increment:
             self.grown = system.elements.plastic_increment()
             if self.grown > step.plastic_increment:
@@ -197,7 +217,51 @@ class StaticStepper(NewtonStepper):
             self.check_stability(outcome, target)
         outcome.converged = outcome.converged and not outcome.reason
         reason = "" if outcome.converged else outcome.reason or "no convergence"
-        return Attempt(target, outcome, contact, reason)
+        return Attempt(target, outcome, contact, reason, share)
+
+    def check_creep(self, target: float) -> tuple[str, float]:
+        """Why the increment is too long for creep, if it is, and the share of it to try next.
+
+        The default tolerance does not cut what would leave too few increments for the step.
+        """
+        self.erred = self.system.elements.creep_error()
+        allowed, control = self.creep_tolerance, self.control
+        if allowed is None:
+            allowed = CREEP_ERROR * self.elastic
+        if not allowed:
+            return "", CUT
+        self.excess = max(self.erred / allowed, LEAST_EXCESS)
+        dt = target - control.time
+        least = control.shortest if self.creep_tolerance is None else 0.0
+        if self.excess <= 1.0 or dt <= least * (1.0 + SAME):
+            return "", CUT
+        share = max(CREEP_SAFETY / math.sqrt(self.excess), LEAST_SHARE, least / dt)
+        return (
+            f"the creep strain of the increment has an error of {self.erred:.3g}, "
+            f"{allowed:.3g} is allowed"
+        ), share
+
+    def measure_creep(self) -> None:
+        """Find the elastic strain of the committed state, to which errors of creep are compared."""
+        system = self.system
+        fields, _ = system.recover(self.state.u)
+        self.elastic = 0.0
+        for block, found in zip(system.own_blocks, fields, strict=True):
+            if not (soft := _soft(block.section.material)):
+                continue
+            stress = found.values["S"]
+            mean = stress[..., :3].mean(axis=-1, keepdims=True)
+            square = np.sum((stress[..., :3] - mean) ** 2, axis=-1) + 2.0 * stress[..., 3] ** 2
+            strain = soft * math.sqrt(1.5 * float(square.max(initial=0.0)))
+            self.elastic = max(self.elastic, strain)
+        self.elastic = system.communicator.greatest(self.elastic)
+
+    def target(self) -> float:
+        """Target step time of the next attempt [time]; short where creep begins without stress."""
+        control = self.control
+        if self.measures and not self.elastic and control.number == 0:
+            control.size = min(control.size, self.step.smallest_increment)
+        return super().target()
 
     def known(self, target: float) -> Evaluation | None:
         """The evaluation of the committed state, if its force is that at another time as well.
@@ -389,13 +453,18 @@ class StaticStepper(NewtonStepper):
         if self.grown > 0.0 and not self.step.fixed_increments:
             control.size = min(control.size, dt * self.step.plastic_increment / self.grown)
         self.creep_error = max(self.creep_error, self.erred)
+        if control.number > 1:  # what acts at once has no error
+            self.creep_excess = max(self.creep_excess, self.excess)
         if self.creep_error and self.finished:
             state.notes += self.creep_notes()
-        if self.creep_tolerance and not self.step.fixed_increments:
-            share = self.creep_tolerance / max(self.erred, 1e-300)
+        if self.measures and not self.finished:
+            self.measure_creep()
+        if self.excess and not self.step.fixed_increments:
             # The error grows with the square of the increment.
-            factor = min(MOST_GROWTH, CREEP_SAFETY * math.sqrt(share))
-            control.size = min(dt * factor, self.step.largest_increment)
+            factor = min(MOST_GROWTH, CREEP_SAFETY / math.sqrt(self.excess))
+            least = control.shortest if self.measures else 0.0
+            size = min(max(dt * factor, least), self.step.largest_increment)
+            control.size = size if not self.grown else min(size, control.size)
         scalars: dict[str, float] = {
             "dt": dt,
             "iterations": float(outcome.iterations),
@@ -409,7 +478,13 @@ class StaticStepper(NewtonStepper):
         return Accepted(control.number, attempt.target / self.step.period, scalars)
 
     def creep_notes(self) -> list[str]:
-        """Note on increments in which the rate of creep changes more than strain allows."""
+        """Note on increments that were too long for creep."""
+        if self.creep_excess > MUCH_EXCESS:
+            return [
+                f"increments of step {self.loop.number} are too long for creep: an error is "
+                f"{self.creep_excess:.2g} times the allowed one; allow more increments (INC=) or "
+                "shorter ones"
+            ]
         fields, _ = self.system.recover(self.state.u)
         strains = (np.abs(block.values["E"]).max(initial=0.0) for block in fields)
         strain = self.system.communicator.greatest(float(max(strains, default=0.0)))
@@ -523,6 +598,13 @@ class StaticStepper(NewtonStepper):
         if limit is None:
             return True
         raise ConvergenceError(at_limit(system, step, number, limit.factor, state))
+
+
+def _soft(material: Material) -> float:
+    """Inverse of Young's modulus of a material that creeps; 0 for others."""
+    first = material.first if isinstance(material, MaterialTable) else material
+    creeps = isinstance(getattr(first, "rate", None), Norton)
+    return float(first.compliance()[0, 0]) if creeps else 0.0
 
 
 def _continued(report: Report | None, before: int, how: str) -> Report | None:

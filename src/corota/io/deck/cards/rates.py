@@ -165,7 +165,7 @@ def visco(deck: Deck, card: Card) -> None:
         return
     now.procedure, now.direct, now.make = card, card.has("DIRECT"), Visco
     step_times(deck, card, now)
-    tolerance = deck.parameter_number(card, "CETOL", 0.0, 0.0) if card.has("CETOL") else 0.0
+    tolerance = deck.parameter_number(card, "CETOL", 0.0, 0.0) if card.has("CETOL") else None
     # Without AMPLITUDE=RAMP the loads of such a step act at once.
     ramp = key(now.card.value("AMPLITUDE")) == "RAMP"
     now.options = {"ramp": ramp, "creep_tolerance": tolerance, **deck.controls}

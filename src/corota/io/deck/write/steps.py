@@ -163,7 +163,7 @@ def _static(says: _Says) -> tuple[str, str]:
     name = "STATIC"
     if isinstance(step, Visco):
         ramp, name = "RAMP" if step.ramp else "", "VISCO"
-        if step.creep_tolerance:
+        if step.creep_tolerance is not None:
             name += f", CETOL={number(step.creep_tolerance)}"
     plain_text = f"*{name}{says.direct()}\n{says.times()}"
     text = plain_text if step.path is None else _riks(says, step)
