@@ -391,7 +391,7 @@ class DistributedLoads:
             section = self.system.blocks[b].section
             nodes.append([ends[0], ends[1], ends[2] if len(ends) == 3 else ends[0]])
             thickness.append(section.thickness_at(np.array(nodes[-1]), points))
-            alpha.append(self.system.blocks[b].share(self._cells[cell][1], side))
+            alpha.append(self.system.blocks[b].shares(self._cells[cell][1], side))
         table = np.asarray(nodes, np.int64).reshape(-1, 3)
         return table, np.array(thickness).reshape(-1, 3), np.asarray(alpha, np.float64)
 

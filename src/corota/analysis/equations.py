@@ -26,6 +26,8 @@ from corota.analysis.terms.term import TERMS, StatePoint
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from corota.analysis.linear.solvers import LinearSolver
@@ -57,6 +59,8 @@ class System(NumberedModel):
     model : Model
     solver : LinearSolver
     threads : int
+    steps : sequence of Step, optional
+        See :class:`NumberedModel`.
     """
 
     recomputed: ClassVar[frozenset[str]] = frozenset(
@@ -64,8 +68,10 @@ class System(NumberedModel):
         | {"communicator"}
     )
 
-    def __init__(self, model: Model, solver: LinearSolver, threads: int = 1) -> None:
-        super().__init__(model, solver, threads)
+    def __init__(
+        self, model: Model, solver: LinearSolver, threads: int = 1, steps: Sequence[Step] = ()
+    ) -> None:
+        super().__init__(model, solver, threads, steps)
         self.conditions = Conditions(self)
         self.elements = Elements(self, self.conditions)
         more = [term for make in TERMS.values() if (term := make(self)) is not None]

@@ -25,12 +25,15 @@ from corota.model import axisymmetry, elements
 from corota.model.blocks import blocks_of, check_shapes, core_input
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.timer import Timer
     from corota.model.model import Model
+    from corota.model.steps import Step
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -50,6 +53,8 @@ class NumberedModel:
     model : Model
     solver : LinearSolver
     threads : int
+    steps : sequence of Step, optional
+        Their supports keep edges of drilling elements straight, as those of the model do.
 
     Attributes
     ----------
@@ -59,11 +64,13 @@ class NumberedModel:
     is_rotation : ndarray of bool, shape (n_dofs,)
     """
 
-    def __init__(self, model: Model, solver: LinearSolver, threads: int = 1) -> None:
+    def __init__(
+        self, model: Model, solver: LinearSolver, threads: int = 1, steps: Sequence[Step] = ()
+    ) -> None:
         self.model = model
         #: The processes that run this analysis; each has its own elements.
         self.communicator: Communicator = getattr(solver, "communicator", ALONE)
-        self.blocks = blocks_of(model)
+        self.blocks = blocks_of(model, steps)
         #: Mass for gravity in static steps.
         self.mass = MovingMass()
         self.linear = LinearSystem(solver)

@@ -243,7 +243,7 @@ class Analysis:
         counters: dict[str, int] = {}
         try:
             require_libraries()
-            self.system = System(self.model, self.solver, self.threads)
+            self.system = System(self.model, self.solver, self.threads, self.steps)
             results.info["n_dofs"] = self.system.n_dofs
             results.info["threads"] = self.threads
             results.info["processes"] = self.communicator.size

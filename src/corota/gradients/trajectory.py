@@ -205,7 +205,7 @@ class Trajectory:
         refuse_motion(model, steps)
         #: Inertia and damping in a dynamic step.
         self.motion: Motion | None = None
-        self.system = System(model, make_solver("multifrontal"), threads)
+        self.system = System(model, make_solver("multifrontal"), threads, self.steps)
         materials = [block.section.material for block in self.system.blocks]
         #: Whether the stress of any material depends on the strain path.
         self.remembers = any(m.remembers for m in materials)

@@ -14,12 +14,16 @@ from corota.mesh.kinds import EDGES
 from corota.model import elements
 from corota.model.element_changes import groups_of_cells
 from corota.model.material_table import MaterialTable
+from corota.model.straight_edges import straight
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from corota.model.model import Model
     from corota.model.sections import Section
+    from corota.model.steps import Step
 
     Ints = NDArray[np.int64]
     Floats = NDArray[np.float64]
@@ -44,11 +48,12 @@ class BlockOfCells:
         sides = None if self.sides is None else self.sides[rows]
         return BlockOfCells(self.section, self.cells[rows], self.nodes[rows], sides)
 
-    def share(self, row: int, edge: int) -> float:
-        """Share of the normal traction of an edge that gives end moments."""
+    def shares(self, rows: Ints | int, edge: int) -> Floats | float:
+        """Share of the normal traction of an edge of some cells that gives end moments."""
         if self.sides is None:
             return elements.find(self.section.element).alpha_b
-        return float(self.sides[row, edge])
+        found: Floats = self.sides[rows, edge]
+        return found
 
 
 def core_input(
@@ -87,8 +92,8 @@ def core_input(
     }
 
 
-def blocks_of(model: Model) -> list[BlockOfCells]:
-    """Group the cells by section and kind.
+def blocks_of(model: Model, steps: Sequence[Step] = ()) -> list[BlockOfCells]:
+    """Group the cells by section and kind; supports of `steps` count beside those of the model.
 
     Raises
     ------
@@ -148,38 +153,38 @@ def blocks_of(model: Model) -> list[BlockOfCells]:
                 blocks.append(BlockOfCells(section, own + offset, cells_of_kind.nodes[own]))
     if not blocks:
         raise ModelError("the model has no elements; add cells and a section for them")
-    _join_edges(blocks, mesh.n_nodes)
+    _share_end_moments(blocks, model, steps)
     return blocks
 
 
-def _join_edges(blocks: list[BlockOfCells], n_nodes: int) -> None:
-    """Give edges between different elements the smaller share of end moments.
+def _share_end_moments(blocks: list[BlockOfCells], model: Model, steps: Sequence[Step]) -> None:
+    """Give edges the share of end moments that their other side can take.
 
     The rotations of a drilling element bend its edges. On an edge common with an element that
     bends it less, or not at all, the displacements would differ, and a constant stress would give
     end moments that nothing balances. With a common share both sides lump a constant stress alike:
-    any mixture passes the patch test. The higher-order parts do not enter, since they vanish at
-    constant strain.
+    any mixture passes the patch test. So do edges that supports and rigid curves keep straight. The
+    higher-order parts do not enter, since they vanish at constant strain.
     """
     facts = [elements.find(b.section.element) for b in blocks]
     planar = [(b, f) for b, f in zip(blocks, facts, strict=True) if not f.line]
-    if len({f.alpha_b for _, f in planar}) < 2:
+    if not any(f.alpha_b for _, f in planar):
         return
-    edges = [b.nodes[:, [e[:2] for e in EDGES[f.cell]]].reshape(-1, 2) for b, f in planar]
-    keys = np.concatenate([e.min(axis=1) * n_nodes + e.max(axis=1) for e in edges])
-    shares = np.concatenate(
-        [np.full(len(e), f.alpha_b) for e, (_, f) in zip(edges, planar, strict=True)]
+    edges = np.concatenate(
+        [b.nodes[:, [e[:2] for e in EDGES[f.cell]]].reshape(-1, 2) for b, f in planar]
     )
+    counts = [len(EDGES[f.cell]) * len(b.nodes) for b, f in planar]
+    shares = np.repeat([f.alpha_b for _, f in planar], counts)
+    supports = [*model.supports, *(s for step in steps for s in step.supports)]
+    shares[straight(model, supports, edges)] = 0.0
+    keys = edges.min(axis=1) * model.mesh.n_nodes + edges.max(axis=1)
     _, edge = np.unique(keys, return_inverse=True)
     least = np.full(edge.max() + 1, np.inf)
     np.minimum.at(least, edge, shares)
-    start = 0
-    for block, f in planar:
-        n = len(EDGES[f.cell])
-        common = least[edge[start : start + n * len(block.nodes)]].reshape(-1, n)
-        start += common.size
-        if (common < f.alpha_b).any():
-            block.sides = common
+    common = np.split(least[edge], np.cumsum(counts)[:-1])
+    for (block, f), own in zip(planar, common, strict=True):
+        if (own < f.alpha_b).any():
+            block.sides = own.reshape(len(block.nodes), -1)
 
 
 def _check_line(model: Model, block: BlockOfCells, turns: bool) -> None:

@@ -9,12 +9,17 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from corota.display import Brief
-from corota.errors import InputError, Location
+from corota.errors import InputError, Location, ModelError
 from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
+    from corota.mesh import Mesh
+
+    Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
 
@@ -111,6 +116,27 @@ class LocalAxes(Brief):
     def __post_init__(self) -> None:
         if not np.isfinite([self.angle, *(self.center or ())]).all():
             raise InputError("the angle and the center of local axes must be finite", self.where)
+
+
+def local_axes(mesh: Mesh, given: Sequence[LocalAxes]) -> dict[int, Floats]:
+    """Axes (columns) of the nodes with local axes; the last definition counts."""
+    axes: dict[int, Floats] = {}
+    for item in given:
+        for node in mesh.node_indices(item.nodes).tolist():
+            angle = item.angle
+            if item.center is not None:
+                arm = mesh.points[node] - np.asarray(item.center)
+                if not np.any(arm):
+                    label = mesh.node_labels[node]
+                    raise ModelError(
+                        f"node {label} lies at the center of its axes and has no radial "
+                        "direction; leave it out",
+                        item.where,
+                    )
+                angle += float(np.arctan2(arm[1], arm[0]))
+            c, s = np.cos(angle), np.sin(angle)
+            axes[node] = np.array([[c, -s], [s, c]])
+    return axes
 
 
 @dataclass(repr=False)

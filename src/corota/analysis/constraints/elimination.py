@@ -17,6 +17,7 @@ import numpy as np
 
 from corota.analysis.linear.triplets import Triplets
 from corota.errors import ModelError
+from corota.model.constraints import local_axes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,32 +33,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
-
-
-def local_axes(model: Model) -> dict[int, Floats]:
-    """Axes (columns) of the nodes with local axes; the last definition counts."""
-    axes: dict[int, Floats] = {}
-    for item in model.axes:
-        nodes = (
-            model.mesh.nodes_of(item.nodes)
-            if isinstance(item.nodes, str)
-            else np.asarray(item.nodes, np.int64)
-        )
-        for node in nodes.tolist():
-            angle = item.angle
-            if item.center is not None:
-                arm = model.mesh.points[node] - np.asarray(item.center)
-                if not np.any(arm):
-                    label = model.mesh.node_labels[node]
-                    raise ModelError(
-                        f"node {label} lies at the center of its axes and has no radial "
-                        "direction; leave it out",
-                        item.where,
-                    )
-                angle += float(np.arctan2(arm[1], arm[0]))
-            c, s = np.cos(angle), np.sin(angle)
-            axes[node] = np.array([[c, -s], [s, c]])
-    return axes
 
 
 @dataclass(eq=False)
@@ -206,7 +181,7 @@ class Constraints:
         self.n = int(start[-1])
         self._about_reference = False
         self.start = start
-        self.axes = local_axes(model)
+        self.axes = local_axes(model.mesh, model.axes)
         self.builder = Builder(model, start, self.axes)
         self.relations = self.builder.build()
         self.owner: dict[int, Relation] = {}
@@ -416,4 +391,4 @@ class Constraints:
             )
 
 
-__all__ = ["Constraints", "LinearizedConstraints", "local_axes"]
+__all__ = ["Constraints", "LinearizedConstraints"]

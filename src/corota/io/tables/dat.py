@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.constraints.elimination import local_axes
 from corota.arrays import distinct
 from corota.errors import InputError
 from corota.io.tables.dat_contact import VARIABLES as CONTACT_VARIABLES
@@ -19,6 +18,7 @@ from corota.io.tables.dat_contact import contact_tables
 from corota.io.tables.dat_numbers import fortran, rows
 from corota.io.tables.dat_section import VARIABLES as SECTION_VARIABLES
 from corota.io.tables.dat_section import section_tables
+from corota.model.constraints import local_axes
 from corota.results.table import INVARIANTS, TABLE, requests, variables
 from corota.results.variables import invariant
 
@@ -113,7 +113,7 @@ def _node_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
     mesh = model.mesh
     nodes = mesh.nodes_of(output.where) if output.where else np.arange(mesh.n_nodes)
     labels = mesh.node_labels[nodes]
-    axes = {} if output.in_global or not model.axes else local_axes(model)
+    axes = {} if output.in_global or not model.axes else local_axes(model.mesh, model.axes)
     for name in (v.upper() for v in output.variables):
         title, total = node_titles()[name]
         values = _node_values(model, frame, name)[nodes] + 0.0  # no negative zeros

@@ -98,7 +98,7 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
             here = np.flatnonzero(mine & (edges[:, 1] == side))
             rows = order[at[here]]
             nodes[here, : len(local)] = block.nodes[rows][:, list(local)]
-            bulge[here] = element.alpha_b
+            bulge[here] = block.shares(rows, side)
             if not block.section.axisymmetric:  # 0 stands for the circumference
                 depth = block.section.thickness_at(nodes[here, :2], mesh.points)
                 thickness[here] = depth.mean(axis=1)
