@@ -94,12 +94,15 @@ def test_a_velocity_goes_on_in_total_time_from_where_a_static_step_ended(tmp_pat
             assert frame.U[0, 0] == pytest.approx(0.25 + 0.5 * past**2, abs=1e-12)
 
 
-def test_what_ends_with_its_step_says_how_it_goes_on(tmp_path: Path) -> None:
+def test_a_velocity_lasts_until_it_is_given_again(tmp_path: Path) -> None:
+    """An acceleration says how it goes on."""
     step = (
         "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.1\n*BOUNDARY, TYPE={}\n1, 1, 1, 1.\n*END STEP\n"
         "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.1\n*END STEP\n"
     )
-    assert "does not continue it" in message(tmp_path, step.format("VELOCITY"))
+    assert "does not continue it" in message(tmp_path, step.format("ACCELERATION"))
+    frame = solve(tmp_path, step.format("VELOCITY")).frames[-1]
+    assert frame.U[0, 0] == pytest.approx(0.2, abs=1e-12)
     again = step.format("VELOCITY").replace(
         "0.1\n*END", "0.1\n*BOUNDARY, TYPE=VELOCITY\n1,1,1,2.\n*END"
     )
@@ -107,13 +110,31 @@ def test_what_ends_with_its_step_says_how_it_goes_on(tmp_path: Path) -> None:
     assert frame.U[0, 0] == pytest.approx(0.1 * 1.0 + 0.1 * 2.0, abs=1e-12)
 
 
+def test_velocities_in_static_steps_are_displacements_per_time(tmp_path: Path) -> None:
+    """They act at once and last, also across a frequency step; a table is integrated."""
+    move = "*BOUNDARY, TYPE=VELOCITY{}\n1, 1, 1, {}\n"
+    head = "*AMPLITUDE, NAME=RUN\n0., 0., 2., 4.\n*STEP\n*STATIC\n.5, .5\n"
+    for option, value, ends in (("", "0.2", (0.1, 0.5, 0.9)), (", AMPLITUDE=RUN", "1.", ())):
+        text = head + move.format(option, value) + "*END STEP\n*STEP\n*FREQUENCY\n1\n*END STEP\n"
+        text += "*STEP\n*STATIC\n2., 2.\n*END STEP\n*STEP\n*STATIC\n1., 1.\n"
+        text += move.format("", "0.4") + "*END STEP\n"
+        found = [f.U[0, 0] for f in solve(tmp_path, text).frames if f.step != 2 and f.time]
+        # The table grows to 4 at 2 and is 4 afterwards: t^2 up to 2.
+        expected = ends or (0.25, 4.0 + 0.5 * 4.0, 6.4)
+        assert found == pytest.approx(expected, abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
         ("*BOUNDARY, TYPE=VELOCITY\n1, 1, 1, 1.\n", "TYPE belongs in a step"),
         (
-            "*STEP\n*STATIC\n*BOUNDARY, TYPE=VELOCITY\n1, 1, 1, 1.\n*END STEP\n",
+            "*STEP\n*STATIC\n*BOUNDARY, TYPE=ACCELERATION\n1, 1, 1, 1.\n*END STEP\n",
             "belongs to *DYNAMIC",
+        ),
+        (
+            "*STEP\n*BUCKLE\n1\n*BOUNDARY, TYPE=VELOCITY\n1, 1, 1, 1.\n*END STEP\n",
+            "belongs to steps with time",
         ),
         (
             "*INITIAL CONDITIONS, TYPE=VELOCITY\n1, 1, 3.\n"

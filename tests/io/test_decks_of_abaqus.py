@@ -137,3 +137,22 @@ def test_a_beam_section_with_numbers_of_points(tmp_path: Path) -> None:
     inertia = math.pi / 4.0 * (0.05**4 - 0.045**4)
     tip = ct.solve(read(tmp_path, text)).frames[-1].U[4, 1]
     assert tip == pytest.approx(-100.0 * 8.0 / (3.0 * 2e11 * inertia), rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("more", "step"),
+    [
+        ("*SURFACE, TYPE=SEGMENTS, NAME=DIE\nSTART, 0., -1.\nLINE, 9., -1.\n", ""),
+        ("*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n", ""),
+        ("", ", NAME=Step-1"),
+    ],
+)
+def test_cards_and_parameters_of_abaqus_alone(tmp_path: Path, more: str, step: str) -> None:
+    text = ROW.format(type="CPS4", more=more).replace("*STEP", "*STEP" + step)
+    assert {s.local_strain for s in read(tmp_path, text).sections} == {"logarithmic"}
+    said = read(tmp_path, "** DIALECT: calculix\n" + text)
+    assert {s.local_strain for s in said.sections} == {"green_lagrange"}
+    ct.write(said, tmp_path / "written.inp")
+    assert [s.local_strain for s in ct.read(tmp_path / "written.inp").sections] == [
+        "green_lagrange"
+    ]

@@ -72,7 +72,7 @@ BAD = [
     ("*PLASTIC\n250., 0.\n260., -.1\n", 2, "plastic strain must be >= 0"),
     ("*PLASTIC\n250., 0., 20.\n200., 0., 300.\n240., .1, 20.\n", 0, "20 is given twice"),
     ("*PLASTIC\n250., 0., 20.\n200., .1, 300.\n", 2, "must start at plastic strain 0"),
-    ("*PLASTIC, DEPENDENCIES=1\n250., 0., 20., 1.\n", 0, "DEPENDENCIES is not supported"),
+    ("*PLASTIC, HARDENING=COMBINED, DEPENDENCIES=1\n250.\n", 0, "many field variables"),
     ("*PLASTIC, HARDENING=WISHFUL\n250.\n", 0, "is not known"),
     ("*PLASTIC, HARDENING=KINEMATIC\n250.,0.\n260.,.1\n270.,.2\n", 3, "is linear: two rows"),
     ("*PLASTIC, DATA TYPE=PARAMETERS\n250., 1., 0.\n", 0, "needs HARDENING=COMBINED"),

@@ -737,6 +737,13 @@ class ArrudaBoyce(Hyperelastic):
         return found
 
 
+def with_ratio(material: Any, nu: float) -> Any:
+    """A law with the compressibility of a Poisson's ratio, or one with such a parent."""
+    if hasattr(material, "parent"):
+        return replace(material, parent=with_ratio(material.parent, nu))
+    return material.with_ratio(nu)
+
+
 __all__ = [
     "ArrudaBoyce",
     "Hyperelastic",
@@ -746,4 +753,5 @@ __all__ = [
     "Ogden",
     "Polynomial",
     "Yeoh",
+    "with_ratio",
 ]

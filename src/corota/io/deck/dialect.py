@@ -35,6 +35,14 @@ OF_ABAQUS = frozenset(
         "ENERGYOUTPUT",
         "BULKVISCOSITY",
         "MONITOR",
+        "EMBEDDEDELEMENT",
+        "CONTACT",
+        "CONTACTINCLUSIONS",
+        "MULLINSEFFECT",
+        "VISCOELASTIC",
+        "CONNECTORBEHAVIOR",
+        "PRESSUREPENETRATION",
+        "CONTACTINTERFERENCE",
     }
 )
 #: Types of elements that Abaqus has and CalculiX has not: hybrid ones, those with incompatible
@@ -46,6 +54,11 @@ ELEMENTS_OF_ABAQUS = re.compile(
 PARAMETERS_OF_ABAQUS = {
     "OUTPUT": ("FIELD", "HISTORY"),
     "BEAMSECTION": ("TEMPERATURE", "POISSON"),
+    "BOUNDARY": ("TYPE",),
+    "STEP": ("NAME",),
+    "STATIC": ("RIKS", "STABILIZE"),
+    "DYNAMIC": ("APPLICATION",),
+    "RIGIDBODY": ("ANALYTICALSURFACE", "PINNSET", "TIENSET"),
 }
 
 
@@ -55,6 +68,8 @@ def find_dialect(cards: Iterable[Card]) -> str:
         if card.keyword in OF_ABAQUS:
             return "abaqus"
         if card.keyword == "ELEMENT" and ELEMENTS_OF_ABAQUS.fullmatch(key(card.value("TYPE"))):
+            return "abaqus"
+        if card.keyword == "SURFACE" and key(card.value("TYPE")) == "SEGMENTS":
             return "abaqus"
         if any(card.has(name) for name in PARAMETERS_OF_ABAQUS.get(card.keyword, ())):
             return "abaqus"

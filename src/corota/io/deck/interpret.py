@@ -6,11 +6,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from corota.io.deck.deck import nearest
+from corota.io.deck.fields import pick_rows
 from corota.io.deck.keywords import KEYWORDS, SPELLED
 from corota.io.deck.lexer import key
 from corota.io.deck.refused import (
     HEAT,
     IGNORED,
+    LABELS,
     PLASTIC,
     PROCEDURE,
     REFUSED_PARAMETERS,
@@ -37,7 +39,7 @@ def interpret(deck: Deck, card: Card) -> None:
     card.scope = deck.scope
     _spell_out(card, known | ignored | refused)
     for name, parameter in card.parameters.items():
-        if name in known:
+        if name in known or (card.keyword, name) in LABELS:
             continue
         if name in ignored or _same(parameter.value, WITHOUT_EFFECT.get((card.keyword, name))):
             deck.note(f"{card.where}: {card.spelled}: {parameter.name} is ignored")
@@ -59,6 +61,8 @@ def interpret(deck: Deck, card: Card) -> None:
             hint="model data stand before the first *STEP",
         )
         return
+    if "DEPENDENCIES" in known and card.has("DEPENDENCIES"):
+        pick_rows(deck, card)
     entry.function(deck, card)
 
 

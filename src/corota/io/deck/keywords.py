@@ -93,7 +93,7 @@ _TABLE: dict[str, Keyword] = {
         place="model",
     ),
     "MATERIAL": Keyword(card("material.material"), "NAME", place="model"),
-    "ELASTIC": Keyword(card("material.elastic"), "TYPE MODULI", place="model"),
+    "ELASTIC": Keyword(card("material.elastic"), "TYPE MODULI DEPENDENCIES", place="model"),
     # Laws with a card of their own.
     **{
         law.card: Keyword(partial(card("material.constants"), law=name), place="model")
@@ -122,10 +122,12 @@ _TABLE: dict[str, Keyword] = {
         )
         for test in ("uniaxial", "biaxial", "planar")
     },
-    "DENSITY": Keyword(card("material.density"), place="model"),
-    "EXPANSION": Keyword(card("thermal.expansion"), "TYPE ZERO", place="model"),
+    "DENSITY": Keyword(card("material.density"), "DEPENDENCIES", place="model"),
+    "EXPANSION": Keyword(card("thermal.expansion"), "TYPE ZERO DEPENDENCIES", place="model"),
     "PLASTIC": Keyword(
-        card("plastic.plastic"), "HARDENING DATATYPE NUMBERBACKSTRESSES RATE", place="model"
+        card("plastic.plastic"),
+        "HARDENING DATATYPE NUMBERBACKSTRESSES RATE DEPENDENCIES",
+        place="model",
     ),
     "POTENTIAL": Keyword(card("plastic.potential"), "", place="model"),
     "RATE DEPENDENT": Keyword(card("rates.rate_dependent"), "TYPE", place="model"),

@@ -34,6 +34,10 @@ _QUOTED = re.compile(r'^"(.*)"$')
 _UNITS = re.compile(rb"^[ \t]*\*\*[ \t]*units[ \t]*[:=]([^\r\n]*)", re.IGNORECASE | re.MULTILINE)
 #: Comments such as ``** STAGE: HUB axis=rotation`` there.
 _STAGE = re.compile(rb"^[ \t]*\*\*[ \t]*stage[ \t]*[:=]([^\r\n]*)", re.IGNORECASE | re.MULTILINE)
+#: A comment ``** DIALECT: calculix`` there.
+_DIALECT = re.compile(
+    rb"^[ \t]*\*\*[ \t]*dialect[ \t]*[:=][ \t]*(calculix|abaqus)\b", re.IGNORECASE | re.MULTILINE
+)
 #: How far into a deck these comments are read [bytes].
 HEAD = 65536
 _BLANK = re.compile(r'[\s"]+')
@@ -124,9 +128,14 @@ class Card:
     text: str
     chunks: list[Chunk] = field(default_factory=list)
     scope: object = None
+    #: Data lines that take the place of those in the file.
+    picked: list[Row] | None = None
 
     def rows(self) -> Iterator[Row]:
         """Iterate over the data lines, without comments and empty ones."""
+        if self.picked is not None:
+            yield from self.picked
+            return
         for chunk in self.chunks:
             start, number = chunk.start, chunk.line
             while start < chunk.stop:
@@ -213,6 +222,8 @@ class Lexer:
         self.diagnostics: list[Diagnostic] = []
         #: What a comment ``** UNITS: N, mm`` says, and where.
         self.units: tuple[str, Location] | None = None
+        #: What a comment ``** DIALECT: calculix`` says.
+        self.dialect = ""
         #: What comments ``** STAGE: HUB axis=rotation`` say, and where.
         self.stages: list[tuple[str, Location]] = []
         self._root = path.resolve().parent
@@ -240,7 +251,7 @@ class Lexer:
         return self.cards
 
     def _read_comments(self, data: bytes) -> None:
-        """Read the comments that name the units and the stages, near the head of the deck."""
+        """Read the comments that name units, dialect and stages, near the head of the deck."""
 
         def said(comment: re.Match[bytes]) -> tuple[str, Location]:
             line = data.count(b"\n", 0, comment.start(1)) + 1
@@ -248,6 +259,8 @@ class Lexer:
 
         units = _UNITS.search(data, 0, HEAD)
         self.units = None if units is None else said(units)
+        dialect = _DIALECT.search(data, 0, HEAD)
+        self.dialect = "" if dialect is None else decode(dialect.group(1)).lower()
         self.stages = [said(comment) for comment in _STAGE.finditer(data, 0, HEAD)]
 
     def _source(self, name: str, data: bytes) -> Source:

@@ -13,6 +13,7 @@ from corota.io.deck.build.model import ModelBuilder
 from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.dialect import find_dialect
 from corota.io.deck.elements import ELEMENTS, OWN
+from corota.io.deck.fields import find_fields
 from corota.io.deck.interpret import interpret
 from corota.io.deck.lexer import Lexer, key
 from corota.io.deck.restart import card_that_reads, with_earlier_steps
@@ -75,7 +76,7 @@ def read_deck(
     saved = None
     if (reads := card_that_reads(cards)) is not None:
         cards, saved = with_earlier_steps(deck, lexer, cards, reads)
-    deck.dialect = find_dialect(cards)
+    deck.dialect, deck.fields = lexer.dialect or find_dialect(cards), find_fields(cards)
     for card in cards:
         interpret(deck, card)
     if not cards and not deck.n_errors:

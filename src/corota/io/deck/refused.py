@@ -102,6 +102,14 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
+            "POROUSELASTIC",
+            "JOINTEDMATERIAL",
+            "VISCOUS",
+            "HYSTERESIS",
+            "ORNL",
+            "CONCRETETENSIONSTIFFENING",
+            "CONCRETECOMPRESSIONHARDENING",
+            "BRITTLESHEAR",
             "MOHRCOULOMB",
             "MOHRCOULOMBHARDENING",
             "DRUCKERPRAGERHARDENING",
@@ -224,19 +232,23 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("TIE", "CYCLICSYMMETRY"): "cyclic symmetry is not part of this version",
     ("TIE", "MULTISTAGE"): "cyclic symmetry is not part of this version",
     **{
-        (keyword, "DEPENDENCIES"): "field variables are not part of this version; constants may "
-        "depend on the temperature alone"
-        for keyword in (
-            "ELASTIC",
-            "DENSITY",
-            "EXPANSION",
-            "PLASTIC",
-            "CYCLICHARDENING",
-            "FRICTION",
-            *LAWS,
-        )
+        (keyword, "DEPENDENCIES"): "field variables belong to *ELASTIC, *DENSITY, *EXPANSION and "
+        "*PLASTIC in this version; give the constants at their values"
+        for keyword in ("CYCLICHARDENING", "FRICTION", *LAWS)
     },
 }
+
+#: Names and places of output, which change nothing and are not noted.
+LABELS = frozenset(
+    {
+        ("STEP", "NAME"),
+        ("OUTPUT", "FIELD"),
+        ("OUTPUT", "HISTORY"),
+        ("OUTPUT", "NAME"),
+        ("ELEMENTOUTPUT", "DIRECTIONS"),
+        ("COUPLING", "CONSTRAINTNAME"),
+    }
+)
 
 #: Values of parameters without effect; others of the same parameter are refused.
 WITHOUT_EFFECT: dict[tuple[str, str], str] = {
@@ -251,24 +263,14 @@ WITHOUT_EFFECT: dict[tuple[str, str], str] = {
     ("MODALDYNAMIC", "CONTINUE"): "NO",
     ("CLOAD", "SECTOR"): "1",
     ("DLOAD", "SECTOR"): "1",
-    **{
-        (keyword, "DEPENDENCIES"): "0"
-        for keyword in (
-            "ELASTIC",
-            "DENSITY",
-            "EXPANSION",
-            "PLASTIC",
-            "CYCLICHARDENING",
-            "FRICTION",
-            *LAWS,
-        )
-    },
+    **{(keyword, "DEPENDENCIES"): "0" for keyword in ("CYCLICHARDENING", "FRICTION", *LAWS)},
     ("RATEDEPENDENT", "EXTRAPOLATION"): "CONSTANT",
 }
 
 __all__ = [
     "HEAT",
     "IGNORED",
+    "LABELS",
     "PLASTIC",
     "PROCEDURE",
     "REFUSED_PARAMETERS",

@@ -10,7 +10,7 @@ import numpy as np
 from corota.io.deck.lexer import key
 from corota.model.integrated import IntegratedAmplitude, VibrationAmplitude
 from corota.model.loads import Fixed
-from corota.model.steps import Dynamic, ModalDynamic, SteadyState
+from corota.model.steps import Dynamic, ModalDynamic, SteadyState, Visco
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Prescribed quantity by the number of its integrations.
 NAMES = {1: "velocity", 2: "acceleration"}
+#: Procedures that take time; ``None`` is a static step.
+TIMED = (None, Dynamic, ModalDynamic, Visco)
 
 
 def base_motion(
@@ -26,12 +28,14 @@ def base_motion(
 ) -> str | None:
     """Name of the integrated amplitude of a support; ``None`` after an error.
 
-    Without an amplitude the value acts at once, or grows over the step with ``AMPLITUDE=RAMP``.
+    Without an amplitude the value acts at once, or grows over a dynamic step with
+    ``AMPLITUDE=RAMP``. A velocity lasts until the support is given again, as in Abaqus.
     """
     what = NAMES[draft.order]
     where = draft.card.at("TYPE")
-    if step.make not in (Dynamic, ModalDynamic):
-        text = f"TYPE={what.upper()} belongs to *DYNAMIC or *MODAL DYNAMIC"
+    if step.make not in (TIMED if draft.order == 1 else (Dynamic, ModalDynamic)):
+        steps = "*DYNAMIC or *MODAL DYNAMIC" if draft.order == 2 else "steps with time"
+        text = f"TYPE={what.upper()} belongs to {steps}"
         deck.error(draft.card, where, text, hint="prescribe the displacement in other steps")
         return None
     number = next(i for i, s in enumerate(deck.steps) if s is step)
@@ -45,9 +49,13 @@ def base_motion(
             hint="give the whole record in the first dynamic step, in TIME=TOTAL TIME",
         )
         return None
-    if not total and any(
-        s.make in (Dynamic, ModalDynamic) and not s.new_supports and not _again(draft, s)
-        for s in later
+    if (
+        draft.order == 2
+        and not total
+        and any(
+            s.make in (Dynamic, ModalDynamic) and not s.new_supports and not _again(draft, s)
+            for s in later
+        )
     ):
         deck.error(
             draft.card,
@@ -56,7 +64,8 @@ def base_motion(
             hint="give it again there, or an amplitude with TIME=TOTAL TIME",
         )
         return None
-    begins = sum(s.times[1] for s in moved) if total else 0.0
+    lasts = draft.order == 1 or total
+    begins = sum(s.times[1] for s in moved if s.make in TIMED) if lasts else 0.0
     name = f"{what} {amplitude or 'constant'} of step {number + 1}"
     if name not in model.amplitudes:
         if amplitude:
@@ -66,8 +75,10 @@ def base_motion(
             time, value = np.array([0.0, step.times[1]]), np.array([0.0, 1.0])
         else:
             time, value = np.zeros(1), np.ones(1)
+        if lasts and not total:
+            time = time + begins
         model.amplitudes[name] = IntegratedAmplitude(
-            time, value, draft.order, begins, total, name, draft.card.where
+            time, value, draft.order, begins, lasts, name, draft.card.where
         )
     return name
 

@@ -15,6 +15,7 @@ from corota.errors import InputError
 from corota.io.deck.build.materials import build_material
 from corota.io.deck.build.mesh import View, views_in
 from corota.io.deck.build.temperatures import constant_temperature, drop_temperatures
+from corota.io.deck.cards.material import HYBRID_RATIO
 from corota.io.deck.deck import nearest
 from corota.io.deck.elements import (
     ASK,
@@ -22,11 +23,13 @@ from corota.io.deck.elements import (
     ELEMENTS,
     LINE_ELEMENTS,
     LINES,
+    OWN,
     WRITTEN_BY_MESHIO,
 )
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.mesh.parts import nodes_of_cells
+from corota.model.hyperelastic import with_ratio
 from corota.model.local_strain import dialect_strain
 from corota.model.sections import Section
 
@@ -45,6 +48,11 @@ if TYPE_CHECKING:
 STABLE = {"Q4I": "Q4S"}
 #: Cards that give beams and springs their section.
 SECTION_CARDS = {"beam": "*BEAM SECTION", "spring": "*SPRING"}
+
+#: Poisson's ratio at small strain of rubber without compressibility in CalculiX, whose bulk modulus
+#: then is 20 times the shear modulus.
+CALCULIX_RATIO = 58.0 / 122.0
+DIALECTS = {"calculix": "CalculiX takes it", "abaqus": "hybrid elements keep the volume"}
 
 by_cell = lazy("corota.io.deck.cards.distribution:by_cell")
 plane_angle = lazy("corota.io.deck.cards.distribution:plane_angle")
@@ -190,7 +198,7 @@ class SectionBuilder:
             if view.instance is not None:
                 angle += view.instance.angle
         strain = draft.local_strain or dialect_strain(material.default_strain, deck.dialect)
-        groups: dict[tuple[str, str], list[Ints]] = {}
+        groups: dict[tuple[str, str, float], list[Ints]] = {}
         types = self.meshes.cell_type[cells]
         for code in distinct(types):
             name = self.meshes.types[code]
@@ -225,10 +233,11 @@ class SectionBuilder:
                 return
             plane = draft.plane or info.plane or (mapped[1] if mapped else "") or "stress"
             element = self._element(name, strain != "linear" and self.nonlinear)
-            groups.setdefault((element, plane), []).append(cells[types == code])
-        if not draft.given and any(plane != "axisymmetric" for _, plane in groups):
+            ratio = self._ratio(name, plane) if material.incompressible else 0.0
+            groups.setdefault((element, plane, ratio), []).append(cells[types == code])
+        if not draft.given and any(plane != "axisymmetric" for _, plane, _ in groups):
             deck.note(f"{card.where}: no thickness is given for {draft.elset}; 1 is taken")
-        if draft.thickness != 1.0 and any(plane == "axisymmetric" for _, plane in groups):
+        if draft.thickness != 1.0 and any(plane == "axisymmetric" for _, plane, _ in groups):
             deck.note(
                 f"{card.where}: the thickness {draft.thickness:g} has no effect: forces of "
                 "axisymmetric elements are those of the whole circumference"
@@ -241,12 +250,19 @@ class SectionBuilder:
             if found is None:
                 return
             by_cells["thickness"] = found
-        if any(plane == "axisymmetric" for _, plane in groups) and draft.nodal:
+        if any(plane == "axisymmetric" for _, plane, _ in groups) and draft.nodal:
             text = "an axisymmetric section has no thickness"
             deck.error(card, card.at("NODALTHICKNESS"), text, hint="remove NODAL THICKNESS")
             return
-        for (element, plane), parts in groups.items():
+        for (element, plane, ratio), parts in groups.items():
             mine = np.sort(np.concatenate(parts))
+            law = material
+            if ratio:
+                law = with_ratio(material, ratio)
+                deck.note(
+                    f"{card.where}: no compressibility is given for {material.name}: Poisson's "
+                    f"ratio {ratio:.5g}, as {DIALECTS[deck.dialect]}"
+                )
             if element in DRILLING:
                 for block, row in ((self.mesh.cells[b], r) for b, r in self._rows(mine)):
                     self.targets.rotating[block.nodes[row]] = True
@@ -258,7 +274,7 @@ class SectionBuilder:
                         Section(
                             where,
                             element,
-                            material,
+                            law,
                             cast("float", 1.0 if plane == "axisymmetric" else depth),
                             cast("Plane", plane),
                             cast("LocalStrain", strain),
@@ -271,6 +287,14 @@ class SectionBuilder:
                 except InputError as error:
                     deck.error(card, card.where, error.message)
                     return
+
+    def _ratio(self, name: str, plane: str) -> float:
+        """Poisson's ratio of an incompressible law in elements of a name; 0 where it stays so."""
+        if name in OWN:
+            return 0.0
+        if self.deck.dialect == "calculix":
+            return CALCULIX_RATIO
+        return HYBRID_RATIO if plane != "stress" and name.endswith("H") else 0.0
 
     def _thickness(
         self, draft: SectionDraft, cells: Ints

@@ -32,6 +32,11 @@ _OTHER_LOADS = (
         "give a *SURFACE of the edges (S3 to S6) and its pressure: the force per length divided by "
         "the thickness",
     ),
+    (
+        r"P\Z",
+        "the pressure on the side of a shell acts out of the plane; edges take P1 to P4 of planar "
+        "elements, P3 to P6 of shells and membranes",
+    ),
     (r"ROTDYNF\Z", "CENTRIF takes the square of the angular velocity"),
     (r"(F|VBF|SBF|SP)\d?\Z", "give springs by *SPRING, pressures by P1 to P4"),
 )

@@ -32,6 +32,9 @@ ELASTIC_TYPES = {
     "LAMINA": "LAMINA",
 }
 
+#: Poisson's ratio that stands for the constant volume of hybrid elements of Abaqus: a bulk modulus
+#: of 10^4 times the shear modulus.
+HYBRID_RATIO = 29998.0 / 60002.0
 #: Values of ``UNITS=`` of ``*NONSTRUCTURAL MASS``.
 NONSTRUCTURAL = ("TOTALMASS", "MASSPERVOLUME", "MASSPERAREA", "MASSPERLENGTH")
 
@@ -57,6 +60,11 @@ def elastic(deck: Deck, card: Card) -> None:
         return
     moduli(deck, card)
     constants(deck, card, law)
+    if law == "ISOTROPIC" and deck.dialect == "abaqus" and deck.material is not None:
+        for _, values in deck.material.constants:
+            if values[1] == 0.5:
+                values[1] = HYBRID_RATIO
+                deck.note(f"{card.where}: Poisson's ratio 0.5 is taken as {HYBRID_RATIO:.5g}")
 
 
 def moduli(deck: Deck, card: Card) -> None:

@@ -117,6 +117,7 @@ class _Writer:
         self.written = [Written(step, [], []) for step in self.steps]
         tail += step_cards(self, self.written)
         yield f"*HEADING\n{model.title or model.name}\n"
+        yield "** DIALECT: calculix\n"
         if model.unit_system:
             yield f"** UNITS: {model.unit_system}\n"
         for stage in model.stages:
@@ -172,7 +173,7 @@ class _Writer:
             options = f"ELSET={self.cell_set(self._planar(section))}, MATERIAL={name}"
             if section.plane != "stress":
                 options += f", PLANE={section.plane.upper()}"
-            # Written decks have no parts: they are read as those of CalculiX.
+            # Written decks say that they are read as those of CalculiX.
             strain = str(section.local_strain)
             if strain != dialect_strain(section.material.default_strain, "calculix"):
                 options += f", LOCAL STRAIN={strain.replace('_', ' ').upper()}"
