@@ -85,6 +85,8 @@ class Deck:
     heading: list[str] = field(default_factory=list)
     damping: tuple[float, float] = (0.0, 0.0)
     controls: dict[str, float] = field(default_factory=dict)
+    #: Whether a card turns on NLGEOM in all steps that do not say otherwise.
+    nonlinear: bool = False
     #: Whether the model is built: all cards are read.
     building: bool = False
     #: Refused element types: references to their elements are not reported again.

@@ -48,7 +48,7 @@ OF_ABAQUS = frozenset(
 #: Types of elements that Abaqus has and CalculiX has not: hybrid ones, those with incompatible
 #: modes, cubic and quadratic planar beams, rigid sides and connectors.
 ELEMENTS_OF_ABAQUS = re.compile(
-    r"CP[ES]\d(R?H|IH?|M|MH)|B2[23]H?|B33H?|PIPE2[12]H?|T2D3H?|R2D2|CONN2D2"
+    r"CP[ES]\d(R?H|IH?|M|MH)|B2[23]H?|B33H?|PIPE2[12]H?|T2D3H?|R2D2|CONN2D2|DCOUP2D"
 )
 #: Parameters that Abaqus has and CalculiX has not, by card.
 PARAMETERS_OF_ABAQUS = {

@@ -108,7 +108,7 @@ def _build(
     kind = cast("Literal['kinematic', 'distributing']", tie.kind)
     title = "rigid body" if not tie.surface else ""
     model.constraints.append(Coupling(chosen, reference, kind, tie.dofs, weights, title, tie.where))
-    rotating[reference] = True
+    rotating[reference] |= kind == "kinematic" or 2 in tie.dofs
 
 
 def _equations(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
@@ -164,9 +164,30 @@ def _weighted(
         assert nodes is not None
         share[model.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes] += weight
     chosen = np.flatnonzero(share)
+    if deck.dialect == "calculix" and key(draft.card.value("TYPE")) == "DCOUP3D":
+        deck.note(
+            f"{tie.where}: the reference node follows the mean displacement, as in CalculiX: its "
+            "distance from the nodes gives no moment; *COUPLING with *DISTRIBUTING does"
+        )
+        # The first term of an equation is the dof that it determines: none that a support moves.
+        every = [*deck.supports, *(item for step in deck.steps for item in step.supports)]
+        moved = {item.index for item in every if _names(model, find(item), reference)}
+        part = -share[chosen] / share.sum()
+        for dof in (0, 1):
+            rows = [(int(n), dof, float(w)) for n, w in zip(chosen, part, strict=True)]
+            rows.insert(1 if dof in moved else 0, (reference, dof, 1.0))
+            model.constraints.append(Equation(rows, 0.0, tie.where))
+        return
     coupling = Coupling(chosen, reference, "distributing", tie.dofs, share[chosen], "", tie.where)
     model.constraints.append(coupling)
     rotating[reference] = True
+
+
+def _names(model: Model, nodes: str | Ints | None, node: int) -> bool:
+    """Whether a set or nodes hold a node."""
+    return nodes is not None and node in (
+        model.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
+    )
 
 
 def _straight(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from corota.io.deck.drafts import StepDraft
+from corota.io.deck.lexer import key
 from corota.model.steps import Dynamic
 
 if TYPE_CHECKING:
@@ -31,11 +32,13 @@ def step(deck: Deck, card: Card) -> None:
         deck.error(
             card, card.where, f"the step of {deck.step.card.where} has no *END STEP before this"
         )
-    nlgeom = bool(deck.steps and deck.steps[-1].nlgeom)
+    before = bool(deck.steps and deck.steps[-1].nlgeom)
+    nlgeom = before or deck.nonlinear
+    if deck.nonlinear and not card.has("NLGEOM"):
+        deck.note("*MPC turns NLGEOM on in steps that do not say NLGEOM=NO, as in CalculiX")
     if card.has("NLGEOM"):
-        if deck.choice(card, "NLGEOM", ("YES", "NO", ""), "YES") != "NO":
-            nlgeom = True
-        elif nlgeom:
+        nlgeom = deck.choice(card, "NLGEOM", ("YES", "NO", ""), "YES") != "NO" or before
+        if before and nlgeom and key(card.value("NLGEOM")) == "NO":
             deck.notes.append(
                 f"{card.where}: NLGEOM=NO after a step with NLGEOM has no effect: large "
                 "rotations stay on, because the structure would jump to the solution of the "

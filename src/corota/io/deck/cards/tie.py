@@ -225,6 +225,7 @@ def mpc(deck: Deck, card: Card) -> None:
     ends come last. ``PLANE`` holds by itself. Rows that begin with a node continue the one before.
     """
     line: TieDraft | None = None
+    deck.nonlinear |= deck.dialect == "calculix"
     for row in card.rows():
         type_ = key(row.get(0))
         if type_ == "STRAIGHT":
