@@ -25,7 +25,7 @@ from corota.results.extremes import places_of
 from corota.results.results import Frame, PointFields, Results
 from corota.results.scalars import OF_FRAMES, where_missing
 from corota.results.table import CONTACT, HARMONIC, TABLE
-from corota.results.variables import FORCES
+from corota.results.variables import FORCES, STORED
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -303,7 +303,8 @@ class FileFrames(Sequence[Frame]):
                 # Frames of other procedures have zeros in place of amplitudes.
                 if attribute == "C" or columns.any():
                     moving[attribute] = columns
-        fields = [self._fields(block, number) for block in range(len(self._blocks))]
+        none = self._without(number)
+        fields = [self._fields(block, number, none) for block in range(len(self._blocks))]
         return Frame(
             int(scalars["step"]),
             int(scalars["increment"]),
@@ -319,8 +320,19 @@ class FileFrames(Sequence[Frame]):
             **moving,
             pairs=self._pairs(number),
             absent=absent,
-            **({} if fields else self._averages(number)),
+            **({} if fields else self._averages(number, none)),
         )
+
+    def _without(self, number: int) -> set[str]:
+        """Variables at points that a frame does not have, where frames of other steps do.
+
+        Their arrays are zero there, in ``PointData`` and at points; extremes are not numbers.
+        """
+        found = set()
+        for name, data in self._file["corota"].get("extremes", {}).items():
+            if np.isnan(data[number * (len(data) // self._count)]).all():
+                found.add(name)
+        return found
 
     def _or_zero(self, name: str, number: int) -> Floats:
         there = name in self._file["VTKHDF/PointData"]
@@ -344,15 +356,16 @@ class FileFrames(Sequence[Frame]):
             for pair in names
         }
 
-    def _averages(self, number: int) -> dict[str, Any]:
+    def _averages(self, number: int, none: set[str]) -> dict[str, Any]:
         """What the file holds of values whose points it does not hold; read when requested."""
         of_pairs = tuple(f"{column}: " for column in CONTACT)
+        absent = {STORED.get(name, name) for name in none}
         at_nodes = [
             name
             for name in self._file["VTKHDF/PointData"]
-            if name not in _NODAL_ARRAYS and not name.startswith(of_pairs)
+            if name not in _NODAL_ARRAYS | absent and not name.startswith(of_pairs)
         ]
-        still = ("section", "element label")
+        still = {"section", "element label", *(f"cell {name}" for name in absent)}
         of_cells = [name for name in self._file["VTKHDF/CellData"] if name not in still]
         return {
             "averages": Arrays(at_nodes, lambda name: self.at_points(name, number)),
@@ -372,14 +385,14 @@ class FileFrames(Sequence[Frame]):
         rows = len(data) // max(self._count, 1)
         return np.asarray(data[number * rows + row], np.float64)
 
-    def _fields(self, block: int, number: int) -> PointFields:
+    def _fields(self, block: int, number: int, none: set[str]) -> PointFields:
         group = self._blocks[block]
         element, cells, shape = self._fixed[block]
         n = len(cells)
         values = {
             name: data[number * n : (number + 1) * n]
             for name, data in group.items()
-            if name not in AT_POINTS
+            if name not in AT_POINTS and name not in none
         }
         points = len(shape)
         for name, part in values.items():

@@ -170,8 +170,8 @@ class Histories:
         found = row_of(frame, "MISES")
         row["largest MISES"] = 0.0 if found is None else float(found[WIDTH])
         for name, nodes in self._supports.items() if "RF" not in frame.absent else ():
-            total = frame.RF[nodes].sum(axis=0)
-            row[f"RF1 {name}"], row[f"RF2 {name}"] = total[:2].tolist()
+            for i, part in enumerate(FORCES):
+                row[f"{part} {name}"] = float(frame.RF[nodes, i].sum())
             heading, moment = self.moment(frame, nodes)
             row[f"RM3 {name} {heading}"] = moment
         self._one.frames = [frame]

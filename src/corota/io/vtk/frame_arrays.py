@@ -22,7 +22,6 @@ from corota.results.table import CONTACT, INVARIANTS, TABLE, TENSORS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.results.results import Frame
 
@@ -113,19 +112,13 @@ def halved(frame: Frame, arrays: dict[str, Floats]) -> dict[str, Any]:
     return found
 
 
-def planar_cells(mesh: Mesh) -> NDArray[np.bool_]:
-    """Whether each cell is of a planar element, shape (n_cells,)."""
-    kinds = [cells.kind.startswith(("tri", "quad")) for cells in mesh.cells]
-    return np.repeat(kinds, [len(cells) for cells in mesh.cells])
-
-
 def nodes_of_sections(model: Model) -> dict[int, Ints]:
-    """Nodes of each section group of planar elements."""
-    mesh, of_cells, planar = model.mesh, section_of_cells(model), planar_cells(model.mesh)
+    """Nodes of each section group."""
+    mesh, of_cells = model.mesh, section_of_cells(model)
     blocks = [
         (of_cells[offset : offset + len(cells)], cells.nodes)
         for offset, cells in zip(mesh.offsets, mesh.cells, strict=False)
-        if len(cells) and planar[offset]
+        if len(cells)
     ]
     group, node, _ = nodes_of_groups([g for g, _ in blocks], [k for _, k in blocks], mesh.n_nodes)
     bounds = {g: np.searchsorted(group, [g, g + 1]) for g in distinct(group).tolist()}
@@ -136,7 +129,6 @@ __all__ = [
     "cell_data",
     "halved",
     "nodes_of_sections",
-    "planar_cells",
     "point_data",
     "scalars",
     "six",

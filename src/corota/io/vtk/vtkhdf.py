@@ -23,7 +23,6 @@ from corota.io.vtk.frame_arrays import (
     cell_data,
     halved,
     nodes_of_sections,
-    planar_cells,
     point_data,
     scalars,
 )
@@ -125,7 +124,7 @@ class VtkhdfWriter:
         self._twin = AtomicFile(path, keep=resume is not None)
         groups = section_of_cells(model) if sections is None else sections
         self._averaging = Averaging(model.mesh, groups)
-        self._sections, self._planar = nodes_of_sections(model), planar_cells(model.mesh)
+        self._sections = nodes_of_sections(model)
         count = self._options.parts
         self._grid = Grid(model, sections, process_of_cells(model, count) if count > 1 else None)
         try:
@@ -348,8 +347,7 @@ class VtkhdfWriter:
             return {}
         names = sorted({k for b in frame.fields for k in b.values} - INVARIANTS.keys())
         names = [name for name in names if wanted(vf.STORED.get(name, name), self._chosen)]
-        planar = [b for b in frame.fields if len(b.cells) and self._planar[b.cells[0]]]
-        groups, at, mean = self._averaging.by_group(planar, names)
+        groups, at, mean = self._averaging.by_group(frame.fields, names)
         found: dict[str, dict[str, Floats]] = {}
         for number, nodes in self._sections.items():
             self._nodes_of_section(number, nodes)
