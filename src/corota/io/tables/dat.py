@@ -118,14 +118,18 @@ def _node_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
         title, total = node_titles()[name]
         values = _node_values(model, frame, name)[nodes] + 0.0  # no negative zeros
         only = output.totals == "only" and total
-        if not only:
+        parts = [values]
+        if name == "U" and frame.H is not None:  # CalculiX prints the imaginary part as well
+            parts.append(np.zeros_like(values))
+            parts[1][:, :2] = frame.H[nodes, :2] * np.sin(frame.H[nodes, 2:4])
+        for part in [] if only else parts:
             yield _head(title + " ", output, frame)
             if name == "NT":
-                yield rows("%10d %13.6E\n", labels, values[:, 0])
+                yield rows("%10d %13.6E\n", labels, part[:, 0])
             elif axes and name != "UR":
-                yield _turned_rows(nodes, labels, values, axes)
+                yield _turned_rows(nodes, labels, part, axes)
             else:
-                yield rows(_VECTOR + "\n", labels, *values.T)
+                yield rows(_VECTOR + "\n", labels, *part.T)
         if total and output.totals != "no":  # in global axes
             fx, fy = (math.fsum(values[:, i].tolist()) for i in range(2))
             yield _head(total + " ", output, frame)
@@ -270,6 +274,10 @@ def _at_points(
     def take(block: PointFields) -> Floats | None:
         stored = INVARIANTS[name][0] if name in INVARIANTS else name
         values = _at_fibers(model, block, stored)
+        if block.element.startswith("SPRING"):
+            if stored != "S":
+                return None  # a force has no strain, and CalculiX prints no rows of springs
+            values = block.values["N"][:, :, None] * [1.0, 0.0, 0.0, 0.0]
         values = block.values.get(stored) if values is None else values
         if values is None:  # what a material does not have, such as plastic strain
             return np.zeros_like(block.volume)
