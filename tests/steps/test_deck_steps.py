@@ -21,7 +21,8 @@ def static(text: str) -> str:
 
 
 def test_parameters_of_static_steps(tmp_path: Path) -> None:
-    plain = ct.solve(read(tmp_path, DECK)).frames[-1].U
+    # STABILIZE is a word of Abaqus.
+    plain = ct.solve(read(tmp_path, "** DIALECT: abaqus\n" + DECK)).frames[-1].U
     text = DECK.replace("*STEP, NLGEOM", "*STEP, NLGEOM, EXTRAPOLATION=NO, UNSYMM=YES").replace(
         "*STATIC", "*STATIC, STABILIZE=0.0002, ALLSDTOL=0.05, CONTINUE=NO"
     )
@@ -29,6 +30,40 @@ def test_parameters_of_static_steps(tmp_path: Path) -> None:
     assert any("no artificial damping" in note for note in model.notes)
     again = ct.solve(model).frames[-1].U
     assert again == pytest.approx(plain, rel=1e-12)
+
+
+def test_a_jump_under_stabilize_ends_in_the_equilibrium_beyond_it(tmp_path: Path) -> None:
+    """A shallow truss that snaps through: 2 N (h - v) / L = P, N = E A (1 - L / L0)."""
+    text = """*NODE
+1, 0., 0.
+2, 1., .1
+3, 2., 0.
+*ELEMENT, TYPE=T2D2, ELSET=T
+1, 1, 2
+2, 2, 3
+*SOLID SECTION, ELSET=T, MATERIAL=M
+1.
+*MATERIAL, NAME=M
+*ELASTIC
+1.E4
+*BOUNDARY
+1, 1, 2
+3, 1, 2
+*STEP, NLGEOM, INC=1000
+*STATIC{more}
+.02, 1., 1e-8, .05
+*CLOAD
+2, 2, -10.
+*END STEP
+"""
+    frame = ct.solve(read(tmp_path, text.format(more=", STABILIZE"))).frames[-1]
+    height = 0.1 + frame.U[1, 1]
+    assert height < -0.1
+    length = math.hypot(1.0, height)
+    force = 2e4 * (length / math.hypot(1.0, 0.1) - 1.0) * -height / length
+    assert force == pytest.approx(10.0, rel=1e-8)
+    with pytest.raises(ct.CorotaError, match="limit point"):
+        ct.solve(read(tmp_path, text.format(more="")))
 
 
 def test_perturbation_of_the_first_step_is_linear(tmp_path: Path) -> None:

@@ -170,6 +170,10 @@ UNSUPPORTED_ELEMENTS: dict[str, str] = {
         ("C3D4", "C3D6", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D15", "C3D20", "C3D20R"), _SOLID
     ),
     **dict.fromkeys(
+        ("JOINT2D", "JOINT3D", "JOINTC"),
+        "give CONN2D2 with *CONNECTOR SECTION, or *SPRING and *DASHPOT between the two nodes",
+    ),
+    **dict.fromkeys(
         ("GAPCYL", "GAPSPHER"), "of gaps this version has GAPUNI; use that or *CONTACT PAIR"
     ),
 }

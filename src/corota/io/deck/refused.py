@@ -63,7 +63,10 @@ IGNORED: dict[str, str] = {
     "DISPLAYBODY": "it affects pictures only",
 }
 
-_CHANGE = "an interaction applies to all steps; pairs may end and begin by *MODEL CHANGE"
+_CHANGE = (
+    "an interaction applies to all steps: give a second pair with another one, and end the first "
+    "by *MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE where it begins; friction has *CHANGE FRICTION"
+)
 _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
 HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
 _OWN_CARDS = ", ".join(f"*{law.card}" for name, law in LAWS.items() if key(law.card) == name)
@@ -156,10 +159,10 @@ UNSUPPORTED: dict[str, str] = {
             "USERSECTION",
             "TRUSSSECTION",
             "FRAMESECTION",
-            "JOINT",
         ),
         _LINE,
     ),
+    "JOINT": "use a CONN2D2 element, or *SPRING and *DASHPOT between the two nodes",
     "REBARLAYER": "give bars as trusses in *EMBEDDED ELEMENT",
     "REBAR": "give bars as trusses in *EMBEDDED ELEMENT",
     "ANNEALTEMPERATURE": "hardening stays at any temperature: leave the card out below it",

@@ -16,6 +16,7 @@ from corota.io.deck.cards.contact import interaction_of
 from corota.io.deck.deck import nearest
 from corota.io.deck.lexer import key
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
+from corota.model.steps import Buckle, Frequency, Visco
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,6 +32,9 @@ if TYPE_CHECKING:
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]
+
+#: Procedures without velocities; ``None`` is a static step.
+AT_REST = (None, Visco, Buckle, Frequency)
 
 
 def build_contacts(
@@ -140,11 +144,16 @@ class _Builder:
 
     def _law(self, draft: InteractionDraft) -> PressureLaw | None:
         card, draft.damping = draft.damping, None  # said once
-        if card is not None and draft.law == "HARD":
+        if card is not None and all(step.make in AT_REST for step in self.deck.steps):
+            self.deck.note(f"{card.where}: {card.spelled}: contact is damped in dynamic steps only")
+        elif (
+            card is not None and draft.law == "HARD" and "FRACTION" in key(card.value("DEFINITION"))
+        ):
+            # Coefficients are the default of Abaqus/Standard and may act before surfaces touch.
             text = "hard contact has no spring that could swing, so none is damped"
             self.deck.note(f"{card.where}: {card.spelled} is ignored: {text}")
         elif card is not None:
-            text = "damping of a pressure law is not part of this version"
+            text = "damping of contact is not part of this version in steps with motion"
             hint = "damp the bodies by *DAMPING, or leave the card out"
             self.deck.error(card, card.where, text, hint=hint)
         if draft.law in ("HARD", "TIED") or not draft.pressure:

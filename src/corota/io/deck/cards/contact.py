@@ -244,16 +244,11 @@ def surface_behavior(deck: Deck, card: Card) -> None:
 
 
 def contact_damping(deck: Deck, card: Card) -> None:
-    """``*CONTACT DAMPING``: without effect on hard contact, whose gaps do not move while closed."""
+    """``*CONTACT DAMPING``: without effect in steps without velocities, and on hard contact."""
     into = _open(deck, card)
     list(card.rows())
-    kinds = ("DAMPINGCOEFFICIENT", "CRITICALDAMPINGFRACTION")
-    # Coefficients are the default of Abaqus/Standard and may act before surfaces touch.
-    if deck.choice(card, "DEFINITION", kinds, kinds[0]) == kinds[0]:
-        text = "damping by a coefficient is not part of this version"
-        hint = "damp the bodies by *DAMPING, or leave the card out"
-        deck.error(card, card.where, text, hint=hint)
-    elif into is not None:
+    deck.choice(card, "DEFINITION", ("DAMPINGCOEFFICIENT", "CRITICALDAMPINGFRACTION"), "")
+    if into is not None:
         into.damping = card
 
 

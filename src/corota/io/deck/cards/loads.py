@@ -26,7 +26,11 @@ _TRACTION = r"(TRVEC|TRSHR)(\d{1,9})\Z"
 _OTHER_LOADS = (
     (r"(PZ|BZ)\Z", "a planar model takes no load out of its plane"),
     (r"(P\d?|[BP][XY]|TRVEC\d?|TRSHR\d?)NU\Z", "no user subroutine is called: give values"),
-    (r"(ROTA|CORIO)\Z", "rotate the base by *BOUNDARY, or give BX and BY"),
+    (
+        r"ROTA\Z",
+        "prescribe the rotation of a *RIGID BODY at the axis in *DYNAMIC: inertia follows from it",
+    ),
+    (r"CORIO\Z", "in rotating frames they follow from CENTRIF in *COMPLEX FREQUENCY, CORIOLIS"),
     (
         r"(EDNOR|EDLD)\d?\Z",
         "give a *SURFACE of the edges (S3 to S6) and its pressure: the force per length divided by "

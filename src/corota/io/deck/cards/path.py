@@ -25,15 +25,16 @@ _WITHOUT_EFFECT = ("LINESEARCH", "CONTACT", "CONSTRAINTS")
 
 def static(deck: Deck, card: Card) -> None:
     """``*STATIC``, or ``*STATIC, RIKS``: the path by arc length."""
-    if card.has("STABILIZE"):
-        deck.note(
-            f"{card.where}: {card.spelled}: no artificial damping is added; the solution is the "
-            "equilibrium without dissipated energy"
-        )
     if not card.has("RIKS"):
         inp_cards_step.static(deck, card)
     else:
         _riks(deck, card)
+    if card.has("STABILIZE") and deck.step is not None and deck.step.procedure is card:
+        deck.note(
+            f"{card.where}: {card.spelled}: no artificial damping is added; beyond a limit point "
+            "the path of equilibrium is followed, through unstable states, to the whole load"
+        )
+        deck.step.options = {"ramp": deck.step.ramp, "at_limit": "follow", **deck.step.options}
     _take_controls(deck)
 
 
