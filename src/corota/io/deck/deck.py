@@ -85,6 +85,8 @@ class Deck:
     heading: list[str] = field(default_factory=list)
     damping: tuple[float, float] = (0.0, 0.0)
     controls: dict[str, float] = field(default_factory=dict)
+    #: Reference nodes whose rotation no coupling carries on.
+    without_moment: set[int] = field(default_factory=set)
     #: Whether a card turns on NLGEOM in all steps that do not say otherwise.
     nonlinear: bool = False
     #: Whether the model is built: all cards are read.

@@ -16,7 +16,6 @@ from corota.io.deck.elements import SHELLS
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.mesh.parts import cells_of
-from corota.model.constraints import Coupling
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, NodalForce
 
 if TYPE_CHECKING:
@@ -84,17 +83,13 @@ class LoadBuilder:
         return cast("np.ndarray[tuple[int], np.dtype[np.bool_]]", self.targets.rotating[indices])
 
     def _no_rotation(self, draft: Draft) -> None:
-        what, hint = (
-            "its elements have no rotation",
+        self.deck.row_error(
+            draft.card,
+            draft.row,
+            1,
+            f"{draft.target}: its elements have no rotation (dof 6)",
             "use elements Q4D or OPT, or map them: --element CPS4=Q4D",
         )
-        nodes = self.targets.nodes(draft)
-        at = self.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
-        if at is not None and any(
-            isinstance(c, Coupling) and c.reference in at for c in self.model.constraints
-        ):
-            what, hint = "its *DISTRIBUTING leaves out the rotation", "couple dofs 1 to 6 there"
-        self.deck.row_error(draft.card, draft.row, 1, f"{draft.target}: {what} (dof 6)", hint)
 
     def loads(self, draft: Draft) -> list[Load]:
         if draft.kind == "surface shear":
@@ -217,6 +212,11 @@ class LoadBuilder:
                 return None
             if draft.index == 2 and not self._rotating(nodes).all():
                 self._no_rotation(draft)
+                return None
+            at = self.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
+            if draft.index == 2 and not self.deck.without_moment.isdisjoint(at.tolist()):
+                text = f"{draft.target}: its *DISTRIBUTING leaves out the rotation (dof 6)"
+                self.deck.row_error(draft.card, draft.row, 1, text, "couple dofs 1 to 6 there")
                 return None
             force = NodalForce(nodes, draft.index, draft.value[0], amplitude, where)
             force.follower = draft.card.has("FOLLOWER") and self._turns(draft, nodes)

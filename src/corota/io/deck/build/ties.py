@@ -108,7 +108,9 @@ def _build(
     kind = cast("Literal['kinematic', 'distributing']", tie.kind)
     title = "rigid body" if not tie.surface else ""
     model.constraints.append(Coupling(chosen, reference, kind, tie.dofs, weights, title, tie.where))
-    rotating[reference] |= kind == "kinematic" or 2 in tie.dofs
+    if kind == "distributing" and 2 not in tie.dofs and not rotating[reference]:
+        deck.without_moment.add(reference)
+    rotating[reference] = True
 
 
 def _equations(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
