@@ -175,6 +175,18 @@ def test_an_impact_in_fixed_increments_is_relaxed():
     assert row["residual"] < 1e-8
 
 
+@pytest.mark.parametrize("number", [880, 1897, pytest.param(1368, marks=pytest.mark.slow)])
+def test_a_plastic_collapse_is_followed_to_its_limit_point(number):
+    """Arc length goes on with what flows and slips at the end of load control.
+
+    With the elastic tangent, or with nodes that stick again, the path seemed to turn round at once:
+    the run stopped in increments of 1e-10 of the load that were elastic, and no reason was shown.
+    """
+    row = run(number, limit=60, size=0.5)
+    assert row["why"].startswith("limit point")
+    assert (row["reason"], row["right"]) == ("limit point", True)
+
+
 def test_a_stop_behind_an_unstable_equilibrium_says_so():
     said = unstable(SimpleNamespace(negative=1))
     assert "The last equilibrium is unstable (negative pivots of the tangent: 1)" in said

@@ -4,15 +4,19 @@
 from __future__ import annotations
 
 import shutil
+from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import corota as ct
+from corota.analysis.procedures.stopping import plateau
 from corota.cli import main
 from corota.model.paths import CriticalPoint
 from corota.model.steps import Static
+from support.lines import lines
 from support.models import cell
 
 DECKS = Path(__file__).parent / "decks"
@@ -105,6 +109,91 @@ def test_plastic_collapse_is_named_with_its_load(at_limit):
     last = error.value.results.frames[-1].factor
     assert last == pytest.approx(200.0 / 230.0, rel=2e-3)
     assert f"at load factor {last:.6g}" in str(error.value)
+
+
+def frame_beam(curve=((250.0, 0.0),), end="fixed", n=4):
+    """Beam of length 200 and plastic moment 500, fixed at the left, with a force in the middle.
+
+    The force reaches 1.5 times the collapse load of perfect plasticity at 250.
+    """
+    model = ct.Model(
+        lines([(200.0 * i / n, 0.0) for i in range(n + 1)], ("line2", [*pairwise(range(n + 1))]))
+    )
+    steel = ct.Mises(E=200e3, nu=0.3, yield_curve=list(curve))
+    model.beam(np.arange(n), material=steel, profile=ct.profiles.rectangle(2.0, 2.0))
+    model.fix([0], rotation=True)
+    if end == "fixed":
+        model.fix([n], rotation=True)
+    else:
+        model.fix([n], x=None, y=0.0)
+    # The mechanism: 4 M (kinks at both ends and twice in the middle) or 3 M, over half the length.
+    model.force([n // 2], y=-1.5 * (4.0 if end == "fixed" else 3.0) * 500.0 / 100.0)
+    return model
+
+
+@pytest.mark.parametrize("at_limit", ["stop", "follow"])
+@pytest.mark.parametrize("end", ["fixed", "propped"])
+def test_a_path_ends_where_the_load_does_not_grow(end, at_limit):
+    """Linear geometry, perfect plasticity: the collapse load by its mechanism.
+
+    There the load stays the same for ever. The path followed it for 955 increments, to
+    displacements 1e8 times too large.
+    """
+    with pytest.raises(ct.ConvergenceError, match="plastic collapse: the limit load") as error:
+        ct.solve(
+            frame_beam(end=end), Static(nlgeom=False, at_limit=at_limit), threads=1, fields=False
+        )
+    frames = error.value.results.frames
+    # Fibers of a section reach its plastic moment but for the last ones.
+    assert frames[-1].factor == pytest.approx(2.0 / 3.0, rel=5e-3)
+    assert len(frames) < 50
+    assert np.abs(frames[-1].U).max() < 100.0
+    assert "times as fast" not in str(error.value)
+
+
+@pytest.mark.parametrize("isotropic", [0.0, 2.0])
+@pytest.mark.parametrize("nlgeom", [False, True])
+def test_collapse_of_a_thick_ring(nlgeom, isotropic):
+    """Pressure 2/sqrt(3) Y log 2 within, in plane strain (Hill); it thins: a little less."""
+    exact = 2.0 / np.sqrt(3.0) * 200.0 * np.log(2.0)
+    model = ct.Model(ct.mesh.annulus(1.0, 2.0, 6, 6, 90.0, "quad8"))
+    steel = ct.Mises(E=2e5, nu=0.3, yield_stress=200.0, isotropic=isotropic)
+    model.section("all", element="Q8R", material=steel, plane="strain")
+    model.fix("start", x=None)
+    model.fix("end", y=None)
+    model.pressure("inner", 1.3 * exact)
+    if isotropic and not nlgeom:
+        ct.solve(model, Static(nlgeom=False), threads=1, fields=False)
+        return
+    with pytest.raises(ct.ConvergenceError, match=r"limit point|the limit load") as error:
+        ct.solve(model, Static(nlgeom=nlgeom), threads=1, fields=False)
+    last = 1.3 * error.value.results.frames[-1].factor
+    assert last == pytest.approx(0.993 if nlgeom else 1.0, rel=1e-4)
+
+
+#: A yield plateau of 24 elastic strains, hardening, and the least of it.
+PLATEAU = ((250.0, 0.0), (250.0, 0.03), (500.0, 0.2))
+HARDENING = ((250.0, 0.0), (450.0, 0.1))
+SLIGHT = ((250.0, 0.0), (450.0, 10.0))
+
+
+@pytest.mark.parametrize("curve", [PLATEAU, HARDENING, SLIGHT])
+@pytest.mark.parametrize("end", ["fixed", "propped"])
+def test_a_path_goes_on_where_the_law_hardens(end, curve):
+    model = frame_beam(curve, end)
+    results = ct.solve(model, Static(nlgeom=False), threads=1, fields=False)
+    assert results.frames[-1].factor == 1.0
+
+
+def test_a_yield_plateau_counts_up_to_its_end():
+    def longest(*curves):
+        laws = [ct.Mises(E=200e3, nu=0.3, yield_curve=list(curve)) for curve in curves]
+        blocks = [SimpleNamespace(section=SimpleNamespace(material=law)) for law in laws]
+        return plateau(SimpleNamespace(blocks=blocks))
+
+    assert longest(((250.0, 0.0),)) == 0.0
+    assert longest(HARDENING, PLATEAU) == pytest.approx(24.0)
+    assert longest(((250.0, 0.0), (300.0, 0.1), (300.0, 0.2))) == 0.0  # perfect in the end
 
 
 def test_unknown_pivots_are_not_told():

@@ -135,7 +135,9 @@ def test_thinned() -> None:
 
 def test_aborted_run(tmp_path: Path) -> None:
     model = beam(ct.Mises(E=1000.0, nu=0.3, yield_stress=0.5), "collapse")
-    # Where increments may be smaller, arc length takes over, and leaves no iterate.
+    # Arc length, which leaves no iterate, follows no amplitude.
+    model.amplitudes["ramp"] = ct.Amplitude([0.0, 1.0], [0.0, 1.0])
+    model.loads[0].amplitude = "ramp"
     step = ct.Static(first_increment=0.2, smallest_increment=1e-3, nlgeom=False)
     with ct.JobFiles(tmp_path) as files, pytest.raises(ct.ConvergenceError):
         ct.solve(model, step, observers=[files], threads=1)

@@ -135,6 +135,10 @@ class PathSystem(Protocol):
         """Residual and tangent."""
         ...
 
+    def take_over(self, at: Evaluation, last: Evaluation) -> None:
+        """Give the start what flows and slips at the end of the last increment."""
+        ...
+
     def rows(self, u: Floats, step_time: float) -> Floats:
         """Internal forces, and the equations of the other unknowns."""
         ...
@@ -223,6 +227,10 @@ class SmoothPath:
     def start(self, u: Floats) -> Floats:
         """The unknowns of a committed state."""
         return u
+
+    def take_over(self, at: Evaluation, last: Evaluation) -> None:
+        """Take the tangent of flow: what is on its yield surface has the elastic one."""
+        at.values[:] = last.values
 
     def rows(self, u: Floats, step_time: float) -> Floats:
         """Forces at the dofs."""

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Growth of the displacement per load since the first increment that indicates collapse.
 SOFT = 10.0
+#: And growth that is none: the load stays the same but for rounding.
+ENDLESS = 1e6
 #: Words that identify a tangent without stiffness.
 FREE = "can move freely"
 
@@ -82,11 +85,25 @@ def collapse(
     if not _yields(system) or not (grown > SOFT or (grown > 0.0 and FREE in why)):
         return ""
     # At a load that stays the same it is infinite.
-    finite = SOFT < grown < np.inf
+    finite = SOFT < grown < ENDLESS
     how = f", with displacements that grow {grown:.0f} times as fast as initially" * finite
     return (
         f"plastic collapse: the limit load of step {number} is reached at load factor "
         f"{factor:.6g}{how}; yielding makes the structure a mechanism that cannot carry more"
+    )
+
+
+def plateau(system: System) -> float:
+    """Longest flow at a stress that rises again behind it, over the elastic strain."""
+    laws = [b.section.material for b in system.blocks if isinstance(b.section.material, Mises)]
+    return max(
+        (
+            (end - begin) * law.E / stress
+            for law in laws
+            for (stress, begin), (same, end) in pairwise((law.yield_curve or [])[:-1])
+            if same == stress
+        ),
+        default=0.0,
     )
 
 
@@ -160,4 +177,4 @@ def explanation(
     )
 
 
-__all__ = ["at_limit", "collapse", "driven", "explanation", "remedies", "unstable"]
+__all__ = ["at_limit", "collapse", "driven", "explanation", "plateau", "remedies", "unstable"]

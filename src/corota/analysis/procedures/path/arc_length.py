@@ -19,6 +19,7 @@ from corota.analysis.path_system import Point
 from corota.analysis.procedures.path.branches import BranchTracer
 from corota.analysis.procedures.path.controls import Row
 from corota.analysis.procedures.path.plan import End, PathStalled, Plan
+from corota.analysis.procedures.stopping import plateau
 from corota.analysis.terms.contact.path import path_system
 from corota.errors import ConvergenceError, InputError, ModelError, SingularError
 from corota.model.dofs import dof_index
@@ -154,6 +155,8 @@ class PathStepper:
         system, step, state = self.system, self.step, self.state
         start = self.along.start(state.u)
         at = self.along.evaluate(start, self.factor * step.period)
+        if self.takes_over and state.at is not None:
+            self.along.take_over(at, state.at)
         force, move = system.load_rate(state.u)
         heats = system.free.largest(system.conditions.heating) > 0.0
         if not (np.any(force[~system.conditions.constrained]) or np.any(move) or heats):
@@ -231,6 +234,9 @@ class PathStepper:
                 "the branch is closed: it returned to its bifurcation point without reaching an "
                 "end of the path"
             )
+        follows = self.system.joined and not self.stop_at_limit  # as what slides, to a stop
+        if self.takes_over and not follows and self.follower.flat(2.0 + plateau(self.system)):
+            raise PathStalled("the limit load is reached: displacements grow at the same load")
         self.found = self.follower.next()
         return self._accept(self.found)
 

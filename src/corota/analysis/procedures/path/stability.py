@@ -251,6 +251,15 @@ def locate(
     return Critical(at.point, after, kind, mode, projection, negative)
 
 
+def limit_behind(system: PathSystem, before: Tangent, end: Station) -> Critical:
+    """Limit point at a kink at the end of an increment, whose mode is the direction behind it."""
+    along = end.tangent.u
+    mode = along / (along[np.abs(np.where(system.counted, along, 0.0)).argmax()] or 1.0)
+    share = work_share(system, end.point, mode)
+    pivots = (before.negative, end.tangent.negative)
+    return Critical(end.point, end, "limit", mode, share, pivots)
+
+
 def _propose(tests: list[tuple[float, float]], low: float, high: float) -> float:
     """Secant of the test function's last two values, or the middle of the bracket."""
     middle = 0.5 * (low + high)
@@ -300,4 +309,13 @@ def work_share(system: PathSystem, point: Point, mode: Floats) -> float:
     return float(force @ mode) / whole if whole else 0.0
 
 
-__all__ = ["Critical", "Station", "has_event", "locate", "softest_mode", "turned", "work_share"]
+__all__ = [
+    "Critical",
+    "Station",
+    "has_event",
+    "limit_behind",
+    "locate",
+    "softest_mode",
+    "turned",
+    "work_share",
+]

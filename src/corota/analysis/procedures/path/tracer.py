@@ -22,7 +22,14 @@ from corota.analysis.procedures.path.controls import Arc, Factor, Plane, Row
 from corota.analysis.procedures.path.corrector import STILL, correct, tangent_at
 from corota.analysis.procedures.path.kinks import direction, sense_behind, shares
 from corota.analysis.procedures.path.plan import End, Increment, PathStalled, Plan
-from corota.analysis.procedures.path.stability import Critical, Station, has_event, locate
+from corota.analysis.procedures.path.stability import (
+    Critical,
+    Station,
+    has_event,
+    limit_behind,
+    locate,
+    turned,
+)
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -61,7 +68,8 @@ MAX_ATTEMPTS = 16
 #: ... and the attempt from which a single displacement replaces the arc.
 OTHER_CONTROL = 6
 
-
+#: Growth of the load's way that counts: roundings are below it, hardening and geometry above.
+FLAT = 1e-6
 #: Part of an amplitude that must be left at the end of the path, or it is another path's.
 LEFT = 0.05
 
@@ -114,6 +122,8 @@ class PathTracer(ABC):
         self.aim: tuple[Point, Tangent] | None = None
         #: Ways of displacements and load factor so far.
         self.way = (0.0, 0.0)
+        #: The same when the load changed last.
+        self.risen = (0.0, 0.0)
         #: Increments so far; whether the start is found, and whether increments follow a tangent.
         self.count, self.begun, self.going = 0, False, False
         #: The bifurcation point from which the next increment takes another branch.
@@ -382,8 +392,11 @@ class PathTracer(ABC):
             )
             self._evaluated = None  # others were tried since the point that is taken
             # A kink that seven digits do not resolve is passed all the same.
-            if critical is None and not (end.behind and self.attempt > KINK):
-                return None
+            if critical is None:
+                if not (end.behind and self.attempt > KINK):
+                    return None
+                if turned(self.mark, tangent):
+                    critical = limit_behind(self.system, self.mark, end)
             point = end.point if critical is None else critical.point
         crossed = self._crossed(point)
         if crossed is not None:
@@ -455,6 +468,8 @@ class PathTracer(ABC):
         if self.plan.fixed:
             return
         self.way = (self.way[0] + moved, self.way[1] + raised)
+        if self.way[1] > (1.0 + FLAT) * self.risen[1]:
+            self.risen = self.way
         if min(self.way) <= 0.0 or self._still(self.way[0]):
             return
         self.metric = Metric(self.metric.counted, self.way[0] / self.way[1])
@@ -463,6 +478,10 @@ class PathTracer(ABC):
         largest = self.plan.largest / self.first_metric.size(t.u, t.factor)
         self.size = min(self.size, largest) * scale
         self.tangent = Tangent(t.u / scale, t.factor / scale, t.negative)
+
+    def flat(self, growth: float) -> bool:
+        """Whether displacements grew by a factor since the load changed last."""
+        return self.way[0] > growth * self.risen[0] > 0.0
 
     def _commit(self, point: Point) -> None:
         if self._evaluated is not point:

@@ -103,6 +103,12 @@ class ContactPathEquations(ContactEquations):
         if first is not None:
             self.last = [s.copy() for s in first]
 
+    def take_over(self, at: Evaluation, last: Evaluation) -> None:
+        """Take the tangent of flow; what slips goes on: its traction alone could stick as well."""
+        at.values[:] = last.values
+        if self.term.at is not None:
+            at.contact_state.settled = [s.copy() for s in self.term.at.states]
+
     def rows(self, z: Floats, step_time: float) -> Floats:
         """Forces at dofs, then gaps and slips in the rows of the multipliers."""
         at = self.evaluate(z, step_time)
