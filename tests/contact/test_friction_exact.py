@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from benchmarks.friction_exact import tension
 from corota import _core
 from corota.model.contact import METHODS
 from tests.contracts.test_contact_gaps import LENGTHS, against_rigid, gradients, moved, two_bodies
@@ -173,3 +174,10 @@ def test_slip_is_a_number_where_a_ray_grazes_a_round():
         d = contact.evaluate(x, old)
         assert d["total_area"].any()
         assert np.isfinite(d["total_slip"]).all()
+
+
+@pytest.mark.parametrize(("mu", "degrees"), [(0.22, 72.0), (0.15, 102.0)])
+def test_the_end_of_a_slave_in_a_moved_grip_has_no_traction_of_its_own(mu, degrees):
+    """It would move nothing, and take any size: the strip stopped, or was drawn by it."""
+    step = ct.Static(increments=1)
+    assert tension("mortar", "Q4I", mu, degrees, step) == pytest.approx(1.0, rel=0.01)

@@ -222,7 +222,12 @@ class ContactTerm(Term):
         self._enter(scheme == "central_difference", ramps)
         if self._stiff:
             self._damp()
-        constrained = self.system.by_node(self.system.constrained.astype(float))
+        held = self.system.constrained.copy()
+        for relation in self.system.constraints.relations:
+            # What moves with a body that supports move is held as well.
+            if held[relation.masters].all():
+                held[relation.dependent] = True
+        constrained = self.system.by_node(held.astype(float))
         for pair in self.pairs:
             pair.fixed = pair.start = None
             pair.hold(constrained, self.persistent)

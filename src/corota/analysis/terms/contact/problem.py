@@ -45,6 +45,8 @@ MAX_STATE_REPEATS = 2
 MAX_REPEATS_BEFORE_CUTBACK = 7
 #: Fraction of the friction bound from which a correction is repeated with slip, and how often.
 FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
+#: Slip over the length of an edge against which friction acts, whatever held before.
+FAR_SLIP = 0.01
 #: Relative difference of two gaps that is rounding.
 EQUAL = 1e-6
 
@@ -355,10 +357,15 @@ class ContactProblem:
         supports move over the surface slips in any case: no traction can hold it.
         """
         early = self.corrections <= 2 and not self.bounded
+        released = [np.zeros(p.n, bool) for p in self.term.pairs]
         for _ in range(MAX_SLIP_CORRECTIONS):
             new = [s.copy() for s in states]
             slip_directions = dict(self.slip_directions)
-            for s, (pair, _, (p, q)) in zip(new, self.pairs(at.contact_state), strict=True):
+            rates = self.gap_rates(at, found[0][:, 0]) if any(r.any() for r in released) else None
+            turned = False
+            for k, (s, (pair, terms, (p, q))) in enumerate(
+                zip(new, self.pairs(at.contact_state), strict=True)
+            ):
                 if not pair.rubs:
                     continue
                 p1 = p + found[1][pair.first : pair.first + pair.n, 0]
@@ -376,10 +383,17 @@ class ContactProblem:
                     over = over | (s == CLOSED) & (np.abs(q1) > FRICTION_EXCESS * bound)
                 s[over] = SLIPPING
                 slip_direction = self.slip_directions[pair.first]
-                slip_directions[pair.first] = np.where(
-                    over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction
-                )
-            if all(np.array_equal(a, b) for a, b in zip(new, states, strict=True)):
+                slip_direction = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction)
+                if rates is not None:
+                    # What stuck without traction, or goes far, takes the direction of its slip.
+                    slip = (terms.slip + rates[k][1]) * slip_direction
+                    wrong = released[k] & (slip > FAR_SLIP * pair.edge * pair.full)
+                    slip_direction = np.where(wrong, -slip_direction, slip_direction)
+                    turned = turned or bool(wrong.any())
+                released[k] |= over
+                slip_directions[pair.first] = slip_direction
+            same = all(np.array_equal(a, b) for a, b in zip(new, states, strict=True))
+            if same and not turned:
                 break
             before, self.slip_directions = self.slip_directions, slip_directions
             try:
