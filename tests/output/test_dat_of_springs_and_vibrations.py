@@ -69,6 +69,49 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
+#: Two squares in a row, joined by equations.
+SQUARES = """*NODE, NSET=N
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+5, 2., 0.
+6, 3., 0.
+7, 3., 1.
+8, 2., 1.
+*ELEMENT, TYPE=CPS4, ELSET=E
+1, 1, 2, 3, 4
+2, 5, 6, 7, 8
+*MATERIAL, NAME=M
+*DENSITY
+.001
+*ELASTIC
+1000., 0.
+*SOLID SECTION, ELSET=E, MATERIAL=M
+1.
+*EQUATION
+2
+5, 1, 1., 2, 1, -2.
+2
+8, 1, 1., 3, 1, -2.
+*BOUNDARY
+N, 2
+1, 1
+4, 1
+2, 1, 1, 0.
+3, 1, 1, .01
+*STEP, INC=100
+*DYNAMIC, DIRECT, ALPHA=0.{explicit}
+.1, .5
+*CLOAD
+6, 1, 1.25
+7, 1, 1.25
+*NODE PRINT, NSET=N, FREQUENCY=5
+U, RF
+*END STEP
+"""
+
+
 def printed(path: Path, text: str) -> list[tuple[str, list[list[float]]]]:
     deck = path / "deck.inp"
     deck.write_text(text)
@@ -102,3 +145,21 @@ def test_the_imaginary_part_follows_the_real_one(tmp_path: Path) -> None:
         (_, real), (_, imaginary) = found[2 * k : 2 * k + 2]
         assert real[1][1] == pytest.approx(exact.real, rel=1e-6)
         assert imaginary[1][1] == pytest.approx(exact.imag, rel=1e-6)
+
+
+@pytest.mark.parametrize("explicit", ["", ", EXPLICIT"])
+def test_forces_in_motion_are_those_of_the_elements(tmp_path: Path, explicit: str) -> None:
+    """RF of CalculiX has the share of equations and inertia: what the displacements give."""
+    text = SQUARES.format(explicit=explicit)
+    if explicit:
+        text = text.replace(", DIRECT, ALPHA=0.", "").replace(".1, .5", ".0001, .0005")
+    found = printed(tmp_path, text)
+    u, rf = (dict((int(row[0]), row[1]) for row in found[k][1]) for k in (-2, -1))
+    for low, high in ((1, 2), (4, 3), (5, 6), (8, 7)):
+        other = {1: 4, 2: 3, 4: 1, 3: 2, 5: 8, 6: 7, 8: 5, 7: 6}[low]
+        across = {2: 3, 3: 2, 6: 7, 7: 6}[high]
+        # Bars along x, bilinear across: a third of E (u_high - u_low) and a sixth of the other;
+        # shear of the sides adds E / 2 times the differences of u across.
+        axial = 1000.0 * ((u[high] - u[low]) / 3.0 + (u[across] - u[other]) / 6.0)
+        shear = 500.0 * ((u[high] - u[across]) / 3.0 + (u[low] - u[other]) / 6.0)
+        assert rf[high] == pytest.approx(axial + shear, abs=2e-4)

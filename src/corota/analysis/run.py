@@ -518,10 +518,8 @@ class Analysis:
         for out in outputs:
             scalars = {**scalars, **out.scalars}
         scalars |= system.conditions.wetted()
-        reaction, held = state.reaction, None
-        if reaction is None:
-            reaction = system.reaction(state.at)
-            held = system.by_node(state.at.residual - reaction)
+        reaction = system.reaction(state.at) if state.reaction is None else state.reaction
+        held = system.by_node(state.at.residual - reaction)
         if self.model.contacts and kind == "static":
             forces = pair_forces(self.model.contacts, scalars)
             self.pair_forces.append((number, state.step_time, forces))

@@ -90,9 +90,8 @@ class Frame(Brief):
         Of a harmonic response: amplitudes of the displacements, their phases, amplitudes of the
         reactions, each x and y, without the state that it is about.
     constraint_force : ndarray, shape (n_nodes, 3), or None
-        Force and moment of constraints on nodes: the part of the internal force that neither loads
-        nor
-        supports carry. Static increments of models with constraints only; not stored in files.
+        Force and moment of constraints on nodes, and in motion of inertia and damping: the part of
+        the internal force that neither loads nor supports carry. Not stored in files.
     pairs : dict of str to ndarray, shape (n_nodes, 5)
         The same for each contact pair, where there are several.
     averages : mapping of str to ndarray

@@ -169,7 +169,7 @@ def _node_values(model: Model, frame: Frame, name: str) -> Floats:
 
 
 def internal_force(model: Model, frame: Frame) -> Floats:
-    """CalculiX's ``RF``: reaction, load and force of constraints; shape (n_nodes, 2)."""
+    """CalculiX's ``RF``: reaction, load, force of constraints and inertia; shape (n_nodes, 2)."""
     values: Floats = (frame.RF + frame.F)[:, :2]
     if frame.constraint_force is not None:
         inside = distinct(np.concatenate([b.nodes.ravel() for b in model.mesh.cells]))
