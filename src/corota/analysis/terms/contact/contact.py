@@ -245,6 +245,8 @@ class ContactTerm(Term):
         self.law_share = 1.0
         if scheme:
             self._share_law(scheme, step)
+        for pair in self.pairs:
+            pair.end_share = 1.5 - self.law_share
         self._keep_law_force()
 
     def _check_pairs(self, step: Step, scheme: str) -> None:

@@ -149,6 +149,7 @@ class Pair:
         #: Corners that stick since what is beside them does, and the states with which they do.
         self.follows: tuple[Bools, NDArray[np.int8] | None] = np.zeros(self.n, bool), None
         self.friction_work = 0.0
+        self.end_share = 0.5  # of the tractions at the end of an increment in their mean
         #: What of it the trapezoidal rule misses, of tractions that grew before the surfaces slid.
         self.beyond_trapezoid = 0.0
         self.seen = False  # whether the surfaces have been near each other
@@ -689,7 +690,10 @@ class Pair:
     def _rub(
         self, slip: Floats, areas: tuple[Floats, Floats], before: tuple[Floats, Floats], q: Floats
     ) -> None:
-        """Add the friction work of an increment, with the mean of the tractions at its ends.
+        """Add the friction work of an increment, with a mean of the tractions at its ends.
+
+        In dynamics a traction is that of the instant at which a scheme has its equilibrium; with
+        `end_share` the mean is that of the middle.
 
         What slides does so from the start: its traction was at the bound then, though a constraint
         that stuck or that slid back before had another. Contact that moves along the slave leaves
@@ -709,9 +713,10 @@ class Pair:
         stays = np.where((q != 0.0) | (total == 0.0), np.minimum(was, now), 0.0)
         begin = q if rates else np.where((q != 0.0) & limited, np.sign(q) * bound, last)
         # Constraints that opened may have slid back without traction.
-        work = stays * np.maximum(-0.5 * (begin + q) * slip, 0.0)
+        end = self.end_share
+        work = stays * np.maximum(-((1.0 - end) * begin + end * q) * slip, 0.0)
         comes = float(((now - stays) * np.maximum(-q * slip, 0.0)).sum())
-        self.friction_work += float(work.sum()) + (1.0 if rates else 0.5) * comes
+        self.friction_work += float(work.sum()) + (1.0 if rates else end) * comes
         late = stays * np.maximum(0.5 * (last - begin) * slip, 0.0)
         self.beyond_trapezoid += float(late.sum())
         if total > 0.0 and self.start is None:
@@ -720,7 +725,7 @@ class Pair:
             at_first = np.sign(float((now * q).sum())) * last
             left = 0.0 if turns else float((leaves * np.where(limited, bound, at_first)).sum())
             grown = left - float((leaves * at_first).sum())
-            self.friction_work += 0.5 * max(left, 0.0) * way
+            self.friction_work += (1.0 - end) * max(left, 0.0) * way
             self.beyond_trapezoid += 0.5 * max(grown, 0.0) * way + (0.5 * comes if turns else 0.0)
 
 
