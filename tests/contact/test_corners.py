@@ -239,6 +239,36 @@ def test_corners_beside_nodes_that_stick_take_no_iterations(element: str) -> Non
 
 
 @pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("beside", [0.0, 1e-8, -1e-8, 1e-4, -1e-4])
+def test_a_block_whose_corners_lie_at_nodes_of_a_wider_table(method: str, beside: float) -> None:
+    """Matching meshes: the corner of the block and the node of the table share their force.
+
+    Their gaps differ by the slope of the table over a ten-thousandth of an edge. With friction the
+    load stalled at .1 %.
+    """
+    parts = {
+        "table": ct.mesh.rectangle(4.0, 1.0, 4, 1),
+        "block": ct.mesh.rectangle(2.0, 1.0, 2, 1, origin=(1.0 + beside, 1.0)),
+    }
+    for nu in (0.0, 0.3):
+        model = ct.Model(ct.mesh.assembly(**parts))
+        model.section("all", element="Q4", material=ct.Elastic(E=1000.0, nu=nu))
+        model.contact("table.top", "block.bottom", friction=0.2, method=method, name="rest")
+        model.fix("table.bottom", x=None, y=0.0)
+        corners = [model.mesh.node_sets[f"{part}.bottom"][0] for part in parts]
+        model.fix(corners, x=0.0, y=None)
+        model.traction("block.top", y=-1.0)
+        results = ct.solve(model, ct.Static(), threads=1)
+        assert len(results.frames) == 2
+        assert results.info["iterations"] <= 12
+        last = results.frames[-1].scalars
+        assert abs(last["rest: force y"]) == pytest.approx(2.0, rel=1e-8)
+        sunk = results.history("U2", at="block.top", combine="mean").values[-1]
+        if nu:  # CalculiX 2.20, penalty 1e7, sticking slope 1e6
+            assert sunk == pytest.approx(-0.001738, rel=0.01)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_corners_between_nodes_that_stick_elsewhere_hold_a_body(method: str) -> None:
     """A block under the middle of one long edge, whose nodes stick to two other bodies."""
     parts = {"left": -0.3, "middle": 1.5, "right": 3.3}

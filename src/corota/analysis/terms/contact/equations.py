@@ -98,9 +98,6 @@ class ContactEquations(ContactProblem):
             found = pivoted(self, at, right_sides)
             if found is not None:
                 z, self.last, slip_directions = found
-                for pair, state in zip(self.term.pairs, self.last, strict=True):
-                    pair.keep_following(state)
-                self.find_following(at, self.last, z[self.n :])
                 self.slip_directions = {
                     p.first: s for p, s in zip(self.term.pairs, slip_directions, strict=True)
                 }

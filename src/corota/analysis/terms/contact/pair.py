@@ -38,13 +38,13 @@ if TYPE_CHECKING:
 
 #: Deformations below this fraction of the model's size are rounding.
 NONE = 1e-8
-#: Change of the pressure of a redundant corner per error of its gap, relative to its stiffness: it
-#: scales corrections, and is zero in what they converge to.
-REDUNDANT = 1e-3
-#: Share of its slip that this change takes up where the slip follows from those of other nodes: the
-#: constraint cannot be met, and its traction would grow with every iteration; and the largest such
-#: slip, in edges.
-FOLLOWS, FOLLOWS_CLOSELY = 0.5, 1e-3
+#: Change of the pressure of a corner beside a closed node per error of its gap, relative to its
+#: stiffness: in the first correction, its factor from each to the next, and its least value. It
+#: keeps dependent constraints solvable. If it stayed large, a corner that is almost at the node
+#: would take over its pressure in many corrections; it is zero in what they converge to.
+REDUNDANT, FADES, LEAST = 1e-4, 0.1, 1e-8
+#: Corrections after which partly covered nodes keep their owners.
+CORRECTIONS_BEFORE_FREEZE = 4
 #: Covered fraction of its area below which a node passes its part to a neighbor.
 WEAK = 0.2
 #: And that above which it takes it back for good.
@@ -131,6 +131,7 @@ class Pair:
         self.overlap = self.base = np.zeros(self.n)  # of the start, and offset of the gap
         self.first_gap = np.zeros(self.n)  # before the first increment
         self.owner = np.arange(self.n)  # constraint that owns a node's part
+        self.redundant = REDUNDANT  # softness of dependent constraints
         self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
         self.held_ends = np.zeros(self.n, bool)  # fixed ends of the slave
@@ -146,8 +147,6 @@ class Pair:
             right[ends[:, 0]], left[ends[:, 1]] = ends[:, 1], ends[:, 0]
             self.beside = (left, right)
         self.slid = np.zeros(self.n)  # slip so far [length]
-        #: Corners that stick since what is beside them does, and the states with which they do.
-        self.follows: tuple[Bools, NDArray[np.int8] | None] = np.zeros(self.n, bool), None
         self.friction_work = 0.0
         self.end_share = 0.5  # of the tractions at the end of an increment in their mean
         #: What of it the trapezoidal rule misses, of tractions that grew before the surfaces slid.
@@ -499,8 +498,7 @@ class Pair:
             stiffness = np.where(self.weightless(q), by_sign, stiffness)
         own = self.full, self.area, stiffness, begin, self.adhering
         friction = self.friction if self.rubs else None
-        slip = np.where(self.follows[0], 0.0, terms.slip)
-        return terms.gap, slip, terms.area, *own, friction
+        return terms.gap, terms.slip, terms.area, *own, friction
 
     def weightless(self, q: Floats) -> Bools:
         """Constraints whose slave node has no stiffness that counts beside a shear traction."""
@@ -569,6 +567,11 @@ class Pair:
         seen = terms.area > COVERED * self.full
         return float(self.conditions.energy(self._at(terms))[seen].sum())
 
+    def freeze(self, corrections: int) -> None:
+        """Prepare for a correction, of this number in the attempt."""
+        self.frozen = corrections >= CORRECTIONS_BEFORE_FREEZE
+        self.redundant = max(REDUNDANT * FADES ** (corrections - 1), LEAST)
+
     def rows(
         self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats, slip_direction: Floats
     ) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
@@ -586,15 +589,14 @@ class Pair:
         backed = self.backed(terms, state)
         if len(backed):
             # The constraints may depend on each other: the pressure of the corner stays.
-            less = REDUNDANT * self.full[backed] / self.stiffness[backed]
+            less = self.redundant * self.full[backed] / self.stiffness[backed]
             found[0][backed] -= less
             stuck = state[backed] == CLOSED
-            loose = np.where(self.follows[0][backed], 1.0 / REDUNDANT, 1.0)
-            found[2][backed[stuck]] -= (loose * less)[stuck]
+            found[2][backed[stuck]] -= less[stuck]
         for k in np.flatnonzero(self.resting):
             # Nothing depends on the shear traction there: that of what sticks stays.
             if state[k] == CLOSED:
-                found[2][k] -= REDUNDANT * self.full[k] / self.stiffness[k]
+                found[2][k] -= self.redundant * self.full[k] / self.stiffness[k]
         return tuple(found)  # type: ignore[return-value]
 
     def backed(self, terms: Terms, state: NDArray[np.int8]) -> Ints:
@@ -607,38 +609,6 @@ class Pair:
         closed = (beside >= 0) & (state[self.owner[beside]] != OPEN)
         out: Ints = corner[closed.any(axis=1) & (state[corner] != OPEN)]
         return out
-
-    def keep_following(self, states: NDArray[np.int8]) -> None:
-        """Forget which corners follow from others, unless the states are those they follow with."""
-        if self.follows[1] is not None and not np.array_equal(states, self.follows[1]):
-            self.follows = np.zeros(self.n, bool), None
-
-    def find_following(self, terms: Terms, states: NDArray[np.int8], change: Floats) -> bool:
-        """Look for corners whose slip follows from those of the nodes beside them.
-
-        Parameters
-        ----------
-        states : ndarray of int, shape (n,)
-            Of the correction.
-        change : ndarray, shape (n,)
-            Of the shear tractions in it.
-
-        Returns
-        -------
-        bool
-            Whether there are others than before: the correction is made again without their slips.
-        """
-        k = self.backed(terms, states)
-        k = k[(states[k] == CLOSED) & ~self.follows[0][k]]
-        taken = REDUNDANT * self.full[k] / self.stiffness[k] * np.abs(change[k])
-        slip = np.abs(terms.slip[k])
-        distance = slip / self.full[k]
-        small = (distance > self.noise) & (distance < FOLLOWS_CLOSELY * self.edge)
-        k = k[small & (taken > FOLLOWS * slip)]
-        if len(k):
-            self.follows = self.follows[0].copy(), states.copy()
-            self.follows[0][k] = True
-        return bool(len(k))
 
     def add_forces(
         self, terms: Terms, dofs: Ints, p: Floats, q: Floats, force: Floats, size: Floats | None

@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     States = list[NDArray[np.int8]]
     Each = tuple[Pair, Terms, tuple[Floats, Floats]]
 
-#: Corrections after which partly covered nodes keep their owners.
-CORRECTIONS_BEFORE_FREEZE = 4
 #: Repetitions of a set of states before the whole linearized problem decides.
 MAX_STATE_REPEATS = 2
 #: Repetitions before the increment is given up.
@@ -140,8 +138,6 @@ class ContactProblem:
         #: Previous position in relaxation, for the tunneling check.
         self.since: Floats | None = None
         self.term.springs = None
-        for pair in self.term.pairs:
-            pair.follows = np.zeros(pair.n, bool), None
         #: Kink of the contact surfaces at which the bodies may rest, and how often one
         #: was tried.
         self.kink: Kink | None = None
@@ -192,7 +188,7 @@ class ContactProblem:
     def freeze(self) -> None:
         self.corrections += 1
         for pair in self.term.pairs:
-            pair.frozen = self.corrections >= CORRECTIONS_BEFORE_FREEZE
+            pair.freeze(self.corrections)
 
     def solve(
         self, at: Evaluation, states: States, right_sides: RightHandSides
@@ -286,11 +282,7 @@ class ContactProblem:
         }
         for (k, i), slip_direction in (slip_directions or {}).items():
             self.slip_directions[self.term.pairs[k].first][i] = slip_direction
-        for pair, state in zip(self.term.pairs, states, strict=True):
-            pair.keep_following(state)
         du, dp, negative, states = self._held(at, states, right_sides)
-        if right_sides.own[0] and self.find_following(at, states, dp[:, 0]):
-            du, dp, negative, states = self._held(at, states, right_sides)
         for (pair, terms, (p, q)), state in zip(self.pairs(at.contact_state), states, strict=True):
             if pair.two:
                 # Slipping tractions follow the pressure; they are no unknowns of the solution.
@@ -301,17 +293,6 @@ class ContactProblem:
                 slips = state != CLOSED
                 dp[pair.first + pair.n : pair.first + pair.width][slips] = new[slips]
         return np.concatenate([du, dp]), negative
-
-    def find_following(self, at: Evaluation, states: States, dp: Floats) -> bool:
-        """Whether a correction of the multipliers shows more corners that follow from others."""
-        more = [
-            pair.find_following(terms, state, self.term.parts(dp)[k][1])
-            for k, ((pair, terms, _), state) in enumerate(
-                zip(self.pairs(at.contact_state), states, strict=True)
-            )
-            if pair.rubs
-        ]
-        return any(more)
 
     def _held(
         self, at: Evaluation, states: States, right_sides: RightHandSides
