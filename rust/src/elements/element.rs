@@ -182,7 +182,7 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     ) {
         let mut frame = Frame::new(x, u, wanted.nlgeom && Self::TURNS);
         let (q, tangent) = (&frame.q, wanted.tangent && T::STIFFNESS);
-        if T::LANES == 1 {
+        if const { T::LANES == 1 } {
             integrate::single_into::<Self, T, N, M, A>(x, q, section, history, tangent, out);
         } else {
             Self::law_into(x, q, section, history, tangent, out);

@@ -317,7 +317,7 @@ where
         let q = local_dofs(&frame, u);
         let mut local = Local::<T, N, 3>::zero();
         let (out_local, tangent) = (&mut local, wanted.tangent && T::STIFFNESS);
-        if T::LANES == 1 {
+        if const { T::LANES == 1 } {
             integrate::single_into::<LocalRing<E>, T, N, 3, A>(
                 x, &q, section, history, tangent, out_local,
             );

@@ -93,7 +93,7 @@ fn parts<T: Real>(h: &[T; 4]) -> Parts<T> {
 /// Strain xx, yy, xy (engineering shear).
 #[inline(always)]
 pub fn strain<T: Real>(h: &[T; 4]) -> [T; 3] {
-    if T::LANES == 1 { out_of_line(|| strain_inline(h)) } else { strain_inline(h) }
+    if const { T::LANES == 1 } { out_of_line(|| strain_inline(h)) } else { strain_inline(h) }
 }
 
 #[inline(always)]
@@ -134,7 +134,7 @@ pub fn second_piola<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 3] {
 /// Stress conjugate to the gradient.
 #[inline(always)]
 pub fn pull<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 4] {
-    if T::LANES == 1 { out_of_line(|| pull_inline(h, t)) } else { pull_inline(h, t) }
+    if const { T::LANES == 1 } { out_of_line(|| pull_inline(h, t)) } else { pull_inline(h, t) }
 }
 
 #[inline(always)]
@@ -153,7 +153,7 @@ fn pull_inline<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 4] {
 /// Derivative of [`pull`] where the stress follows the strain with the tangent `tangent`.
 #[inline(always)]
 pub fn tangent<T: Real>(h: &[T; 4], t: &[T; 3], tangent: &Mat<T, 3>) -> Mat<T, 4> {
-    if T::LANES == 1 {
+    if const { T::LANES == 1 } {
         out_of_line(|| tangent_inline(h, t, tangent))
     } else {
         tangent_inline(h, t, tangent)

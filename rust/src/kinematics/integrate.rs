@@ -4,7 +4,7 @@
 
 use super::about_mean::AboutMean;
 use super::dilatation::{Dilatation, by_modes, times};
-use super::law_tape::{LawTape, Way};
+use super::law_tape::{LawTape, WIDTH, Way};
 use super::local_strain::{LocalStrain, det};
 use super::modes::{condense, linear_modes, relax};
 use super::per_point::PerPoint;
@@ -92,9 +92,10 @@ impl History<'_> {
     /// Answer of a law at a point, whose stress acts on the volume `w`.
     #[inline(always)]
     pub fn answer<T: Real>(&mut self, p: usize, law: &Law, e: [T; 3], w: T) -> Response<T> {
-        if T::DERIVATIVES > 0
-            && let Some(tape) = self.tape.take()
+        // Laws have no instance for numbers that only go backwards.
+        if const { T::DERIVATIVES > 0 } && (const { T::DERIVATIVES < WIDTH } || self.tape.is_some())
         {
+            let tape = self.tape.take().expect("derivatives go backwards along a tape");
             let state = &mut self.point(p, law.n_state());
             let update = |e, state: &mut PointState<'_>| {
                 let answer = law.update(e, state);
@@ -115,9 +116,9 @@ impl History<'_> {
         e: [T; 4],
         w: T,
     ) -> SolidResponse<T> {
-        if T::DERIVATIVES > 0
-            && let Some(tape) = self.tape.take()
+        if const { T::DERIVATIVES > 0 } && (const { T::DERIVATIVES < WIDTH } || self.tape.is_some())
         {
+            let tape = self.tape.take().expect("derivatives go backwards along a tape");
             let state = &mut self.point(p, law.n_state());
             let update = |e, state: &mut PointState<'_>| {
                 let answer = law.update_solid(e, state);
@@ -359,7 +360,7 @@ pub(super) fn pass<E, T: Real, const N: usize, const M: usize, const A: usize>(
 where
     E: Element<N, M, A>,
 {
-    if T::LANES == 1 && A > 0 {
+    if const { T::LANES == 1 && A > 0 } {
         single_pass::<E, T, N, M, A>(x, q, alpha, section, history, out, tangent)
     } else {
         points::<E, T, N, M, A>(x, q, alpha, section, history, out, tangent)
@@ -745,23 +746,23 @@ pub fn local_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
 ) where
     E: Element<N, M, A>,
 {
-    if A == 0 {
+    if const { A == 0 } {
         let none = [[T::zero(); 2]; A];
         let sums = pass::<E, T, N, M, A>(x, q, &none, section, history, Some(&mut *out), tangent);
         out.failed = sums.failed;
         return;
     }
-    let taped = T::DERIVATIVES > 0 && history.tape.is_some();
     let mut alpha = [[T::zero(); 2]; A];
     let mut failed = T::none();
-    if taped || !(section.law.is_linear() && section.strain.is_linear()) {
+    if T::DERIVATIVES > 0 || !(section.law.is_linear() && section.strain.is_linear()) {
         for m in 0..A {
             for i in 0..2 {
                 alpha[m][i] = T::load(&history.alpha[(2 * m + i) * history.stride..]);
             }
         }
     }
-    if taped {
+    // Only elements that remember something themselves go without a tape; they have no modes.
+    if const { T::DERIVATIVES > 0 } {
         taped_into::<E, T, N, M, A>(x, q, section, history, &mut alpha, out);
         return;
     }

@@ -36,15 +36,22 @@ impl<M: Material, T: Real> Job for UpdateSolid<'_, '_, M, T> {
     }
 }
 
-/// One instance for each law and number type, whatever the elements that call it; batches of
-/// elements have short laws inlined.
+/// The choice among laws as a job: elements call one instance of it.
+struct Chosen<'a, 'b, S> {
+    law: &'a Law,
+    e: S,
+    state: &'a mut PointState<'b>,
+}
+
+/// One instance for each law and number type, whatever the elements that call it. Short laws are
+/// inlined in the choice, and in batches of elements.
 #[inline(always)]
 pub(super) fn update<M: Material, T: Real>(
     law: &M,
     e: [T; 3],
     state: &mut PointState<'_>,
 ) -> Response<T> {
-    if M::SHORT && T::LANES > 1 { law.update(e, state) } else { T::apart(Update { law, e, state }) }
+    if const { M::SHORT } { law.update(e, state) } else { T::apart(Update { law, e, state }) }
 }
 
 #[inline(always)]
@@ -53,7 +60,7 @@ pub(super) fn update_solid<M: Material, T: Real>(
     e: [T; 4],
     state: &mut PointState<'_>,
 ) -> SolidResponse<T> {
-    if M::SHORT && T::LANES > 1 {
+    if const { M::SHORT } {
         law.update_solid(e, state)
     } else {
         T::apart(UpdateSolid { law, e, state })
@@ -67,6 +74,24 @@ macro_rules! law {
         /// Any registered material.
         #[derive(Clone, Debug)]
         pub enum Law { $($name($name)),+ }
+
+        impl<T: Real> Job for Chosen<'_, '_, [T; 3]> {
+            type Output = Response<T>;
+            #[inline(always)]
+            fn run(self) -> Response<T> {
+                let (e, state) = (self.e, self.state);
+                match self.law { $(Law::$name(m) => update(m, e, state)),+ }
+            }
+        }
+
+        impl<T: Real> Job for Chosen<'_, '_, [T; 4]> {
+            type Output = SolidResponse<T>;
+            #[inline(always)]
+            fn run(self) -> SolidResponse<T> {
+                let (e, state) = (self.e, self.state);
+                match self.law { $(Law::$name(m) => update_solid(m, e, state)),+ }
+            }
+        }
 
         impl Law {
             /// Names of all materials.
@@ -105,7 +130,10 @@ macro_rules! law {
             }
             #[inline(always)]
             pub fn update<T: Real>(&self, e: [T; 3], state: &mut PointState<'_>) -> Response<T> {
-                match self { $(Law::$name(m) => update(m, e, state)),+ }
+                match self {
+                    $(Law::$name(m) if const { $name::SHORT && T::LANES > 1 } => m.update(e, state),)+
+                    _ => T::apart(Chosen { law: self, e, state }),
+                }
             }
             #[inline(always)]
             pub fn update_solid<T: Real>(
@@ -113,7 +141,10 @@ macro_rules! law {
                 e: [T; 4],
                 state: &mut PointState<'_>,
             ) -> SolidResponse<T> {
-                match self { $(Law::$name(m) => update_solid(m, e, state)),+ }
+                match self {
+                    $(Law::$name(m) if const { $name::SHORT && T::LANES > 1 } => m.update_solid(e, state),)+
+                    _ => T::apart(Chosen { law: self, e, state }),
+                }
             }
             pub fn out_of_plane(&self, e: [f64; 3], s: [f64; 3], state: &[f64]) -> (f64, f64) {
                 match self { $(Law::$name(m) => m.out_of_plane(e, s, state)),+ }

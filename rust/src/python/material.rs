@@ -1,7 +1,7 @@
 //! A material alone, for Python: its answer along a strain path.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::base::Dual;
+use crate::kinematics::law_tape::{Number, WIDTH};
 use crate::materials::c_function::Call;
 use crate::materials::external::{self, Convention};
 use crate::materials::umat::Subroutine;
@@ -72,14 +72,20 @@ fn material_path<'py>(
     let [mut stress, mut tangent, mut derivative, mut zz, mut energy, mut states] =
         [const { Vec::<f64>::new() }; 6];
     let mut outputs = vec![Vec::<f64>::new(); law.outputs().len()];
+    // The history as numbers with derivatives, which are zero.
+    let (mut numbers, mut answers) =
+        (vec![0.0; members * (1 + WIDTH)], vec![0.0; members * (1 + WIDTH)]);
     let mut before = start;
     for (row, e) in strain.as_slice()?.as_chunks::<3>().0.iter().enumerate() {
         let end = times.get(row).copied().unwrap_or(before);
         let clock = Clock { increment: end - before, end, lasting };
         before = end;
-        let dual: [Dual<3>; 3] = std::array::from_fn(|i| Dual::variable(e[i], i));
-        let mut point = PointState { old: &old, new: &mut new, stride: 1, clock };
-        let exact = law.update(dual, &mut point);
+        let number: [Number; 3] = std::array::from_fn(|i| Number::variable(e[i], i));
+        for (places, v) in numbers.chunks_exact_mut(1 + WIDTH).zip(&old) {
+            places[0] = *v;
+        }
+        let mut point = PointState { old: &numbers, new: &mut answers, stride: 1 + WIDTH, clock };
+        let exact = law.update(number, &mut point);
         let mut point = PointState { old: &old, new: &mut new, stride: 1, clock };
         let answer = law.update(*e, &mut point);
         if answer.failed {
@@ -87,7 +93,7 @@ fn material_path<'py>(
         }
         stress.extend(answer.stress);
         tangent.extend(answer.tangent.as_flattened());
-        derivative.extend(exact.stress.iter().flat_map(|s| s.d));
+        derivative.extend(exact.stress.iter().flat_map(|s| s.d.into_iter().take(3)));
         zz.extend(<[f64; 2]>::from(law.out_of_plane(*e, answer.stress, &new)));
         energy.push(law.energy(*e, answer.stress, &new));
         for (i, values) in outputs.iter_mut().enumerate() {
@@ -138,7 +144,7 @@ fn strain_measure<'py>(
         parts[0].extend(e);
         parts[1].extend(measure.pull(h, &s));
         parts[2].extend(measure.tangent(h, &s, &c).as_flattened());
-        let dual: [Dual<4>; 4] = std::array::from_fn(|i| Dual::variable(h[i], i));
+        let dual: [Number; 4] = std::array::from_fn(|i| Number::variable(h[i], i));
         let e = measure.strain(&dual);
         let s = hooke(&c, e);
         let energy = (e[0] * s[0] + e[1] * s[1] + e[2] * s[2]).scale(0.5);
