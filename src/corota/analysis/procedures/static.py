@@ -60,7 +60,7 @@ UNCHANGED = 1e-9
 CREEP_ERROR = 0.003
 #: Share of the increment that would have the allowed error of creep, and limits of its change.
 CREEP_SAFETY, LEAST_SHARE, MOST_GROWTH = 0.9, 1e-3, 4.0
-#: Error over the allowed one that is none, and one that is told.
+#: Error over the allowed one that is none, and one that gives a note.
 LEAST_EXCESS, MUCH_EXCESS = 1e-12, 10.0
 #: Note of the iterations of such an attempt.
 UNLOADING = "line search from the elastic tangent"
