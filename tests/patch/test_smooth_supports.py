@@ -66,6 +66,38 @@ def test_a_set_of_slave_nodes_leaves_edges_straight() -> None:
     np.testing.assert_allclose(stress(results), [[0.0, -10.0]] * len(stress(results)), atol=1e-8)
 
 
+@pytest.mark.parametrize("element", list(DRILLING))
+def test_contact_does_not_stiffen_slender_parts(element: str) -> None:
+    """A strip of one cell lifted off the floor bends as without it (up to 3 times too stiff)."""
+    tips = []
+    for floor in (False, True):
+        model = ct.Model(ct.mesh.rectangle(8.0, 0.5, 6, 1, cell=DRILLING[element]))
+        model.section(element=element, material=ct.Elastic(E=1e5, nu=0.3))
+        model.fix("left", rotation=True)
+        model.force("right", y=0.1)
+        if floor:
+            line = ct.RigidCurve.line((-1.0, 0.0), (9.0, 0.0))
+            model.contact("bottom", line, method="node_to_segment")
+        results = ct.solve(model, ct.Static(nlgeom=False), threads=1)
+        tips.append(float(results.history("U2", at="right", combine="mean")[-1]))
+    assert tips[1] == pytest.approx(tips[0], rel=0.02)
+
+
+@pytest.mark.parametrize("element", ["Q4D", "OPT"])
+def test_a_disc_bends_a_strip_of_one_cell(element: str) -> None:
+    """Force of Q9 with 64 x 8 cells: 86.5; straight edges had three times as much."""
+    mesh = ct.mesh.rectangle(10.0, 0.5, 8, 1, DRILLING[element], "alternate")
+    disc = ct.mesh.add_node(mesh, 8.0, 1.5, "disc")
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=1.0e6, nu=0.3))
+    model.fix("left", rotation=True)
+    model.fix([disc], x=0.0, y=-1.4, rotation=0.0)
+    curve = ct.RigidCurve.circle((8.0, 1.5), 1.0, reference=disc)
+    model.contact("top", curve, method="node_to_segment", name="pair")
+    results = ct.solve(model, ct.Static(increments=20), threads=1)
+    assert abs(results.frames[-1].scalars["pair: force y"]) == pytest.approx(86.5, rel=0.08)
+
+
 def test_clamped_edges_keep_their_share() -> None:
     """A clamp with free rotations is that of the literature: Cook's membrane, 20.5644."""
     from corota.verification.models import cook, linear

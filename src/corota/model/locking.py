@@ -91,13 +91,19 @@ def locking_in(mesh: Mesh, section: Section, cells: Ints, steps: list[Step]) -> 
     return found
 
 
-def _bending(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
+def outlines(mesh: Mesh) -> tuple[Ints, Floats, Floats]:
+    """Part of each cell, and outline [length] and area of each part, shape (n_parts,)."""
     part = part_of_cells(mesh)
-    area, outline = _area(mesh), np.zeros(part.max(initial=-1) + 1)
+    outline = np.zeros(part.max(initial=-1) + 1)
     edges = mesh.boundary_edges()
     for cell, nodes in zip(edges[:, 0], mesh.edge_nodes(edges), strict=True):
         outline[part[cell]] += math.dist(mesh.points[nodes[0]], mesh.points[nodes[1]])
-    areas = np.bincount(part, area, len(outline))
+    return part, outline, np.bincount(part, area_of_cells(mesh), len(outline))
+
+
+def _bending(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
+    part, outline, areas = outlines(mesh)
+    area = area_of_cells(mesh)
     name = section.element
     element = elements.find(name)
     triangle = element.n_nodes == 3
@@ -122,7 +128,8 @@ def _bending(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
     return []
 
 
-def _area(mesh: Mesh) -> Floats:
+def area_of_cells(mesh: Mesh) -> Floats:
+    """Area of each cell by its corners, shape (n_cells,) [length^2]; 0 of lines."""
     parts = [np.zeros(0)]
     for block in mesh.cells:
         if not EDGES[block.kind]:

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
+from corota.mesh.parts import nodes_of_cells
 from corota.model import axisymmetry
 from corota.model.constraints import local_axes
 from corota.model.contact import METHODS, RigidCurve
+from corota.model.locking import SLENDER, outlines
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,20 +23,24 @@ if TYPE_CHECKING:
     from corota.model.model import Model
 
     Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
 #: Square of the cosine between the direction of a support and the normal of an edge that it holds:
 #: supports along a curve are not normal to the chords of a mesh.
 NORMAL = 0.75
+#: Distance over the length of an edge at which it lies on a rigid curve.
+SAME = 1e-6
 
 
 def straight(model: Model, supports: Sequence[Fixed], edges: Ints) -> Bools:
     """Whether edges stay straight, shape (n,): what acts on them acts at their nodes alone.
 
     Where a free rotation bent such an edge, a constant stress would be lost, on any mesh. That is
-    so for edges between smooth supports and for surfaces whose nodes touch a rigid curve. Mortar
-    contact acts on bent edges. Node to segment between two bodies loses a constant stress anyway:
-    its edges are left as they are.
+    so for edges between smooth supports and for those whose nodes touch a flat rigid curve from the
+    start. Slender parts (:data:`corota.model.locking.SLENDER`) keep their bending: with straight
+    edges one cell through the width is three times too stiff. Mortar contact acts on bent edges.
+    Node to segment between two bodies loses a constant stress anyway: its edges stay as they are.
 
     Parameters
     ----------
@@ -79,7 +85,7 @@ def _supported(model: Model, supports: Sequence[Fixed], edges: Ints) -> Bools:
 
 
 def _touched(model: Model, edges: Ints) -> Bools:
-    """Whether edges are outer ones of a surface whose nodes touch a rigid curve."""
+    """Whether edges of compact parts lie on a flat rigid curve that their nodes touch."""
     mesh = model.mesh
     found = np.zeros(len(edges), bool)
     for pair in model.contacts:
@@ -89,12 +95,31 @@ def _touched(model: Model, edges: Ints) -> Bools:
         ):
             here = np.zeros(mesh.n_nodes, bool)
             here[nodes] = True
-            found |= here[edges].all(axis=1)
+            mine = np.flatnonzero(here[edges].all(axis=1))
+            ends = mesh.points[edges[mine]]
+            for segment in pair.master.segments[pair.master.segments[:, 6] == 0.0]:
+                found[mine] |= _on(segment, ends)
     if found.any():
         keys = edges.min(axis=1) * mesh.n_nodes + edges.max(axis=1)
         _, edge, count = np.unique(keys, return_inverse=True, return_counts=True)
         found &= count[edge] == 1
+        part, outline, area = outlines(mesh)
+        slender = np.zeros(mesh.n_nodes, bool)
+        slender[nodes_of_cells(mesh, np.flatnonzero((outline**2 > SLENDER * area)[part]))] = True
+        found &= ~slender[edges[:, 0]]
     return found
+
+
+def _on(segment: Floats, ends: Floats) -> Bools:
+    """Whether both ends (n, 2, 2) of edges lie on a straight segment of a rigid curve."""
+    start, along = segment[:2], segment[2:4] - segment[:2]
+    size = np.hypot(*(ends[:, 1] - ends[:, 0]).T)[:, None]
+    length = np.hypot(*along)
+    at = (ends - start) @ along / length
+    away = np.abs((ends - start) @ np.array([-along[1], along[0]])) / length
+    near = (away <= SAME * size) & (at >= -SAME * size) & (at <= length + SAME * size)
+    on: Bools = near.all(axis=1)
+    return on
 
 
 def _nodes(model: Model, where: str | Ints) -> tuple[Ints, bool]:
