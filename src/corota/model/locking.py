@@ -98,7 +98,8 @@ def outlines(mesh: Mesh) -> tuple[Ints, Floats, Floats]:
     edges = mesh.boundary_edges()
     for cell, nodes in zip(edges[:, 0], mesh.edge_nodes(edges), strict=True):
         outline[part[cell]] += math.dist(mesh.points[nodes[0]], mesh.points[nodes[1]])
-    return part, outline, np.bincount(part, area_of_cells(mesh), len(outline))
+    area: Floats = np.bincount(part, area_of_cells(mesh), len(outline)).astype(float)
+    return part, outline, area
 
 
 def _bending(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
