@@ -29,7 +29,7 @@ import numpy as np
 import corota as ct
 from benchmarks.common import machine, table, write_between
 from benchmarks.contact_answers import answer
-from benchmarks.contact_problems import problem
+from benchmarks.contact_problems import Problem, problem
 from benchmarks.contact_reasons import reason
 
 #: Every so many problems is run in another unit of length, by this factor, too.
@@ -53,8 +53,12 @@ def run(
     number: int, limit: int, unit: float = 1.0, size: float = 1.0, answers: bool = False
 ) -> dict[str, Any]:
     """Outcome of a problem; with what it found where `answers` are wanted."""
-    given = problem(number, unit, size)
-    out: dict[str, Any] = {"number": number, "name": given.name, "what": given.what}
+    return {"number": number, **outcome(problem(number, unit, size), limit, answers)}
+
+
+def outcome(given: Problem, limit: int, answers: bool = False) -> dict[str, Any]:
+    """The same of a problem that is made already."""
+    out: dict[str, Any] = {"name": given.name, "what": given.what}
     begin, results = time.process_time(), None
     signal.signal(signal.SIGPROF, _stop)
     signal.setitimer(signal.ITIMER_PROF, limit)

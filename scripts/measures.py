@@ -20,15 +20,15 @@ TERM = r"\b(contact_term|ContactTerm)\b"
 DRAWER = r"^    [a-z]\w*: "
 
 
-def constants(tree: Path) -> int:
-    """Constants of modules of contact; a tuple that is assigned counts each."""
-    found = [
-        line.split("=")[0].split(":")[0].count(",") + 1
+def constants(tree: Path) -> list[tuple[str, str]]:
+    """Constants of modules of contact, (file, name); a tuple that is assigned has each."""
+    return [
+        (path.removeprefix(CONTACT), name.strip())
         for path, text in sources(tree)
         for line in text.splitlines()
         if path.startswith(CONTACT) and re.match(CONSTANT, line) and "__all__" not in line
+        for name in line.split("=")[0].split(":")[0].split(",")
     ]
-    return sum(found)
 
 
 def evaluations(tree: Path) -> int:
@@ -47,7 +47,7 @@ def evaluations(tree: Path) -> int:
 MEASURES: dict[str, Callable[[Path], int]] = {
     "files of contact": lambda t: sum(p.startswith(CONTACT) for p, _ in sources(t)),
     "lines of contact": lambda t: size(t, CONTACT),
-    "constants of contact": constants,
+    "constants of contact": lambda t: len(constants(t)),
     "files that know the contact term": lambda t: sum(
         bool(re.search(TERM, text)) for _, text in sources(t)
     ),

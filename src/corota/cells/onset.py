@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.gaps import COVERED, OPEN, SLIPPING
+from corota.analysis.terms.contact.gaps import OPEN, SLIPPING, covered
 from corota.analysis.terms.linearized import Linearized
 from corota.cells.states import point_of, settle, state_at
 from corota.cells.waves import UNIFORM, Waves
@@ -154,7 +154,7 @@ def _keeps_contact(state: State) -> bool:
     for pair, terms, (p, q), own in each:
         if pair.tied:
             continue
-        seen = terms.area > COVERED * pair.full
+        seen = covered(terms.area, pair.full)
         through = seen & (terms.gap < -OVER * state.system.length * pair.full)
         bad = (own == OPEN) & through
         bad |= (own != OPEN) & (p < -most)

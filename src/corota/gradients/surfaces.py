@@ -17,7 +17,7 @@ from scipy.sparse.linalg import lsqr
 
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import ContactEquations
-from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SLIPPING
+from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SLIPPING, covered
 from corota.analysis.terms.contact.problem import RightHandSides
 from corota.errors import UnsupportedError
 
@@ -107,7 +107,7 @@ def find(system: System, u: Floats, time: float, at: Evaluation, kinks: bool = F
     state = evaluate(system, u, np.ones(term.n), time)
     rows, columns, values, states, closed = [], [], [], [], []
     for pair, terms in zip(term.pairs, state.terms, strict=True):
-        seen = terms.area > COVERED * pair.full
+        seen = covered(terms.area, pair.full)
         # A node on the joint of two edges may be a little inside of one.
         touches = seen & (terms.gap <= TOUCHES * system.length * pair.full)
         if pair.tied:

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.gaps import (
-    COVERED,
     OPEN,
     ContactState,
     Terms,
+    covered,
     no_contact,
 )
 from corota.analysis.terms.term import NO_NODES, NONE, Term, TermOutput
@@ -27,6 +27,8 @@ from corota.lazy import lazy
 from corota.model.contact import ContactPair, Tie
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from corota.analysis.evaluation import Evaluation
@@ -310,7 +312,7 @@ class ContactTerm(Term):
         pair.core.search(x)
         raw = pair.core.evaluate(x, x)
         area = raw["total_area"]
-        seen = area > COVERED * pair.full
+        seen = covered(area, pair.full)
         gap = np.where(seen, raw["total_gap"] / np.where(seen, area, 1.0), 0.0)
         if item.clearance is not None:
             pair.core.offset = np.where(seen, gap - item.clearance, 0.0)
@@ -361,7 +363,7 @@ class ContactTerm(Term):
     def _start_tie(self, pair: Pair, x: Floats) -> None:
         pair.core.search(x)
         raw = pair.core.evaluate(x, x)
-        bare = raw["total_area"] <= COVERED * pair.full
+        bare = ~covered(raw["total_area"], pair.full)
         if bare.all():
             raise ModelError(
                 f"tie {pair.name!r}: no edge of {pair.slave.name!r} lies on {pair.item.master!r} "
@@ -372,7 +374,7 @@ class ContactTerm(Term):
             labels = self.system.model.mesh.node_labels[pair.nodes[bare]]
             self.notes.append(
                 f"tie {pair.name!r}: {len(labels)} nodes of {pair.slave.name!r} are out of "
-                f"tolerance and stay free: {_few(labels)}"
+                f"tolerance and stay free: {few(labels)}"
             )
 
     # -- evaluation --------------------------------------------------------------------
@@ -635,9 +637,10 @@ class ContactTerm(Term):
         return int(self.system.model.mesh.node_labels[node])
 
 
-def _few(labels: Ints, most: int = 5) -> str:
+def few(labels: Sequence[int] | Ints, most: int = 5) -> str:
+    """The first labels of a list."""
     shown = ", ".join(str(n) for n in labels[:most])
     return shown + (", ..." if len(labels) > most else "")
 
 
-__all__ = ["ContactTerm"]
+__all__ = ["ContactTerm", "few"]

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import COVERED
+from corota.analysis.terms.contact.gaps import covered
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def discrete_gradient(
     old, x = positions
     n = len(full)
     # Terms that exist only at the end act along the gradient there.
-    known = middle.area > COVERED * full
+    known = covered(middle.area, full)
     parts = [(middle, known[middle.constraint]), (end, ~known[end.constraint])]
 
     def both(array: Callable[[Terms], NDArray[Kind]]) -> NDArray[Kind]:

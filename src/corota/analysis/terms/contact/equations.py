@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms
+from corota.analysis.terms.contact.contact import few
 from corota.analysis.terms.contact.gaps import WAITED
 from corota.analysis.terms.contact.impact import impact_error
 from corota.analysis.terms.contact.kinks import along_kink, both_sides, keeps_kink
@@ -33,13 +34,10 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
 
-#: Nodes that a note lists.
-MAX_LISTED = 8
 #: Additional iterations allowed for contact.
 MAX_EXTRA_CONTACT_ITERATIONS = 24
-#: Iterations without progress before an increment is cut: few that take more converge.
-PATIENCE = 8
-#: Residual below which states that do not change any more are those of the end.
+#: Residual from which only digits are missing: states that do not change any more are those of the
+#: end, and a position on the way is reached.
 SETTLED = 1e-6
 #: Displacement of an increment, relative to its first correction, that counts as a jump, driven by
 #: supports and by forces.
@@ -226,18 +224,15 @@ class ContactEquations(ContactProblem):
                 f"no contact is closed, and {self.loose}: the position of that body is "
                 "undetermined until contact or a support constrains it"
             )
-        dropped: dict[str, list[str]] = {}
+        dropped: dict[str, list[int]] = {}
         for number in sorted(self.border.dropped - self.term.reported_constraints):
             pair = next(p for p in reversed(self.term.pairs) if p.first <= number)
             constraint = (number - pair.first) % pair.n
             if constraint < pair.of_nodes:  # not a facet between two nodes that are closed as well
-                label = str(self.term.label(pair, constraint))
-                dropped.setdefault(pair.name, []).append(label)
+                dropped.setdefault(pair.name, []).append(self.term.label(pair, constraint))
         for name, labels in dropped.items():
-            some = ", ".join(labels[:MAX_LISTED])
-            more = f" and {len(labels) - MAX_LISTED} more" if len(labels) > MAX_LISTED else ""
             notes.append(
-                f"contact pair {name!r}: the constraint at node {some}{more} is redundant and was "
+                f"contact pair {name!r}: the constraint at node {few(labels)} is redundant and was "
                 "dropped: supports, ties or other contact constraints fix the node in that "
                 "direction and carry its force"
             )
@@ -249,4 +244,4 @@ class ContactEquations(ContactProblem):
         return explanation(self, at)
 
 
-__all__ = ["MAX_EXTRA_CONTACT_ITERATIONS", "PATIENCE", "ContactEquations"]
+__all__ = ["MAX_EXTRA_CONTACT_ITERATIONS", "SETTLED", "ContactEquations"]

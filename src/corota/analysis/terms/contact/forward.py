@@ -23,8 +23,8 @@ import numpy as np
 
 from corota.analysis.terms.contact.complementarity import UnilateralConstraints
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.gaps import ContactState
-from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN
+from corota.analysis.terms.contact.gaps import ContactState, covered
+from corota.analysis.terms.contact.pair import CLOSED, OPEN
 from corota.errors import ConvergenceError
 
 if TYPE_CHECKING:
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Rounds in which forces close further constraints.
-ROUNDS = 20
 #: Size of a matrix from which it is treated as sparse.
 DENSE = 100_000
 #: Depth, in edges, that a fixed surface may be pressed into another fixed one.
@@ -191,7 +189,7 @@ class ForwardContact:
             zip(contact.pairs, found, contact.parts(multipliers), strict=True)
         ):
             stored = pair.law_energy(contact.at.terms[i]) if contact.at is not None else 0.0
-            seen = terms.area > COVERED * pair.full
+            seen = covered(terms.area, pair.full)
             pair.area = np.where(seen, terms.area, pair.full)
             account.impact += pair.law_energy(terms) - stored
             if not pair.rubs:
@@ -259,7 +257,7 @@ class _Increment:
         self.ruled = np.repeat([pair.law is not None for pair in pairs], counts)
         self.friction = np.concatenate([pair.friction for pair in pairs])
         self.two = np.repeat([pair.two for pair in pairs], counts)
-        self.seen = self.area > COVERED * self.full
+        self.seen = covered(self.area, self.full)
         self.tolerance = noise * self.full
         self.state = np.concatenate(own.state)
         self.sense = np.ones(self.n)
@@ -310,9 +308,7 @@ class _Increment:
         chosen = self.seen & (self.tied | (self.state != OPEN) | (self.gap < -self.tolerance))
         chosen |= self.seen & self.ruled & (self.gap < self.area * self._start_of_laws())
         movable = np.zeros(self.n, bool)
-        for _ in range(ROUNDS):
-            if not chosen.any():
-                break
+        while chosen.any():
             movable, p, q, self.pushed = self._forces(chosen)
             rise = self._travel(self.pushed)[0] if self.pushed.any() else 0.0
             more = self.seen & ~chosen & ~self.ruled & (self.gap + rise < -self.tolerance)

@@ -16,17 +16,18 @@ if TYPE_CHECKING:
 
 #: States of a constraint, as the laws of the core number them.
 OPEN, CLOSED, SLIPPING = 0, 1, 2
-#: Fraction of its full area below which a node counts as uncovered.
-COVERED = 1e-9
-#: Relative difference of lengths, of parts of a way and of forces that is rounding.
+#: Relative difference of lengths, areas, parts of a way and forces that is rounding.
 SAME = 1e-9
 #: Compliance of closed constraints relative to that of their nodes: constraints that follow from
 #: others then leave a matrix regular, and share the force.
 COMPLIANCE = 1e-10
 #: Bisections of an interval, to its rounding.
 HALVINGS = 44
-#: Iterations without progress before all states are chosen together, or a kink is searched.
+#: Tries without progress, or returns of a set of states, before all states are chosen together or a
+#: kink is searched, and before that is given up.
 WAITED = 3
+#: And before an increment is cut: few that take more converge.
+PATIENCE = 8
 
 
 @dataclass
@@ -160,6 +161,12 @@ class Kink:
         self.share = share + part * change
 
 
+def covered(area: Floats, full: Floats) -> NDArray[np.bool_]:
+    """Which constraints have an opposite surface: by their areas there and their full ones."""
+    found: NDArray[np.bool_] = area > SAME * full
+    return found
+
+
 def no_contact() -> ContactState:
     """State without pairs, or evaluated without multipliers; new, since checkpoints fill it."""
     return ContactState([], np.zeros(0), np.zeros(0), np.zeros(0))
@@ -168,14 +175,15 @@ def no_contact() -> ContactState:
 __all__ = [
     "CLOSED",
     "COMPLIANCE",
-    "COVERED",
     "HALVINGS",
     "OPEN",
+    "PATIENCE",
     "SAME",
     "SLIPPING",
     "WAITED",
     "ContactState",
     "Kink",
     "Terms",
+    "covered",
     "no_contact",
 ]

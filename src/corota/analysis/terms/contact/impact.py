@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.pair import COVERED, OPEN
+from corota.analysis.terms.contact.gaps import covered
+from corota.analysis.terms.contact.pair import OPEN
 from corota.analysis.terms.contact.tunneling import UNSEEN, other_side, times_of_crossing
 from corota.mesh.parts import part_of_nodes
 
@@ -97,7 +98,7 @@ def _first_contact(term: ContactTerm, contact_state: ContactState, meets: bool) 
         if pair.start is not None:
             depth = -(terms.bare or terms).gap
         else:
-            seen = begun.area > COVERED * pair.full
+            seen = covered(begun.area, pair.full)
             depth = np.where(seen & (pair.states(terms, p, q) != OPEN), begun.gap, 0.0)
         if pair.law is None and apart.any():
             depth = np.where(apart, depth / pair.full, 0.0)
@@ -169,7 +170,7 @@ class Approach:
             apart = pair.apart(terms, None if term.at is None else term.at.states[number])
             if not apart.any():
                 continue
-            seen = apart & (terms.area > COVERED * pair.full)
+            seen = apart & covered(terms.area, pair.full)
             time, meets = _time_to_contact(pair, terms, seen, rates, acceleration)
             if not seen.all():
                 farther = _time_in_reach(pair, apart & ~seen, x, rates, min(time, until))

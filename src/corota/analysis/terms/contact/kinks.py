@@ -207,11 +207,9 @@ def _kink(
     return Kink(-pressures / size, -moves / size, jump) if size > 0.0 else None
 
 
-#: Kinks that an attempt tries, and corrections in which one may carry a force above its jump.
-MAX_KINKS, MAX_BEYOND = 3, 3
-#: Fractions of the jump between which an equilibrium is searched: beyond, the bodies do not rest
-#: there.
-FEWEST_SHARES, MOST_SHARES = -2.0, 3.0
+#: Jumps beyond the forces of both sides in which an equilibrium is searched: farther, the bodies do
+#: not rest there.
+OUTSIDE = 2.0
 #: Remainder of two corrections that cancel each other, relative to the last one.
 TO_AND_FRO = 0.2
 
@@ -220,7 +218,7 @@ def keeps_kink(problem: ContactProblem, at: Evaluation) -> bool:
     """Whether the correction is one at a kink; looks for one where there is no progress."""
     if problem.kink is not None:
         problem.beyond += problem.kink.excess > 0.0
-        if problem.beyond <= MAX_BEYOND:
+        if problem.beyond <= WAITED:
             return True
         if problem.inherits:
             problem.kink, problem.beyond, problem.inherits = None, 0, False
@@ -228,7 +226,7 @@ def keeps_kink(problem: ContactProblem, at: Evaluation) -> bool:
         raise GiveUp("no equilibrium at the kink of the contact surfaces")
     if (
         problem.waited < WAITED
-        or problem.kinks >= MAX_KINKS
+        or problem.kinks >= WAITED
         or not _to_and_fro(problem.places)
         or at.link.couples
         or problem.term.persistent
@@ -271,7 +269,7 @@ def along_kink(
         problem.kink = None
         return None
     change = (kink.distance - float(first)) / float(second)
-    if not FEWEST_SHARES <= kink.share + change <= MOST_SHARES:
+    if not -OUTSIDE <= kink.share + change <= 1.0 + OUTSIDE:
         problem.kink = None
         return None
     dz: Floats = z[:, 0] + change * z[:, 1]

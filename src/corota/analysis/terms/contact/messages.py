@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.surface import blunt_turns, sharp_corners
+from corota.analysis.terms.contact.gaps import WAITED
+from corota.analysis.terms.contact.surface import CORNER, blunt_turns, sharp_corners
 from corota.model.contact import ContactPair, RigidCurve
 
 if TYPE_CHECKING:
@@ -23,13 +24,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: How often a state must have changed to be named.
-OFTEN = 2
 #: Part of the force of a pair from which a node carries it alone, and of its friction bound from
 #: which friction is used up.
 WHOLE = 0.99
-#: Least turn of a body's boundary at a corner [rad], as for constraints of corners.
-LEAST_TURN = np.radians(50.0)
 #: Turns at a vertex between which a surface is a round [rad].
 ROUND_FROM, ROUND_TO = 1e-3, 0.6
 
@@ -52,7 +49,7 @@ def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
     flipping = [
         (int(f[j]), pair, int(j))
         for pair, f in zip(problem.term.pairs, problem.flips, strict=True)
-        for j in np.flatnonzero(f > OFTEN)
+        for j in np.flatnonzero(f >= WAITED)
     ]
     flipping.sort(key=lambda item: -item[0])
     if flipping:
@@ -64,7 +61,7 @@ def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
         )
     if way := gives_way(problem.term):
         said += f"; {way}"
-    elif problem.sliding > OFTEN:
+    elif problem.sliding >= WAITED:
         said += "; friction does not hold the bodies: they slide"
     if problem.loose:
         said += f"; without contact pressure, {problem.loose}"
@@ -119,7 +116,7 @@ def _corners(contact_term: ContactTerm) -> NDArray[np.bool_]:
     comes, goes = np.zeros((mesh.n_nodes, 2)), np.zeros((mesh.n_nodes, 2))
     comes[ends[:, 1]], goes[ends[:, 0]] = along, along
     cross = comes[:, 0] * goes[:, 1] - comes[:, 1] * goes[:, 0]
-    found: NDArray[np.bool_] = np.arctan2(cross, (comes * goes).sum(axis=1)) > LEAST_TURN
+    found: NDArray[np.bool_] = np.arctan2(cross, (comes * goes).sum(axis=1)) > CORNER
     return found
 
 

@@ -13,6 +13,7 @@ from corota.analysis.failure import ElementFailure
 from corota.analysis.newton import newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm
+from corota.analysis.terms.contact.gaps import PATIENCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -110,7 +111,6 @@ def solve_increment(
         return outcome, NoContact(system.n_dofs)
     from corota.analysis.terms.contact.equations import (
         MAX_EXTRA_CONTACT_ITERATIONS,
-        PATIENCE,
         ContactEquations,
     )
     from corota.analysis.terms.contact.output import pressures

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN
+from corota.analysis.terms.contact.gaps import CLOSED, OPEN, covered
 from corota.arrays import distinct
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def output(
         terms, state = contact_state.terms[k], contact_state.states[k]
         acting, x = contact_state.acting[k], contact_state.where
         assert x is not None
-        seen = terms.area > COVERED * pair.full
+        seen = covered(terms.area, pair.full)
         gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), pair.reach)
         # Positive when the slave is pulled along its own edges' direction.
         rows = np.column_stack([p, q, gap, pair.slid, state])[pair.owner]

@@ -11,7 +11,7 @@ import numpy as np
 
 import corota._core as _core
 from corota.analysis.terms.contact.discrete_gradient import discrete_gradient
-from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SLIPPING, Terms
+from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SLIPPING, WAITED, Terms, covered
 from corota.analysis.terms.contact.setup import contact_core, tie_core
 from corota.arrays import distinct
 from corota.model.contact import METHODS, ContactPair, RigidCurve, Tie
@@ -43,16 +43,12 @@ NONE = 1e-8
 #: keeps dependent constraints solvable. If it stayed large, a corner that is almost at the node
 #: would take over its pressure in many corrections; it is zero in what they converge to.
 REDUNDANT, FADES, LEAST = 1e-4, 0.1, 1e-8
-#: Corrections after which partly covered nodes keep their owners.
-CORRECTIONS_BEFORE_FREEZE = 4
 #: Covered fraction of its area below which a node passes its part to a neighbor.
 WEAK = 0.2
 #: And that above which it takes it back for good.
 AMPLE = 0.5
 #: Coefficient that stands for zero where it is larger in other steps.
 LEAST_FRICTION = 1e-9
-EPS = float(np.finfo(float).eps)
-ALL = slice(None)
 #: Variables of a term, as in the core.
 WIDTH = 20
 #: Edges by which its friction would move a slave node whose stiffness does not count, and the slip
@@ -160,7 +156,9 @@ class Pair:
         self.stiffness = np.ones(self.n)  # pressure per gap for the choice of the set
         self.size = system.length
         far = float(np.abs(system.model.mesh.points).max())
-        self.noise = 32.0 * EPS * (system.length + far)  # gaps that are rounding [length]
+        self.noise = (
+            32.0 * float(np.finfo(float).eps) * (system.length + far)
+        )  # gaps that are rounding [length]
         self.conditions = self._conditions()
         self.name = item.name
 
@@ -188,7 +186,7 @@ class Pair:
         Where nothing has moved yet, those of the increment before stay.
         """
         if self.rubs and dt > 0.0 and terms.slip.any():
-            seen = terms.area > COVERED * self.full
+            seen = covered(terms.area, self.full)
             self.rate = np.where(seen, np.abs(terms.slip), 0.0) / np.where(
                 seen, terms.area * dt, 1.0
             )
@@ -324,7 +322,7 @@ class Pair:
 
     def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
         """Constraints of slave surfaces on which none is closed at a committed state."""
-        seen = terms.area > COVERED * self.full
+        seen = covered(terms.area, self.full)
         closed = seen & (terms.gap <= self.noise * self.full)
         if states is not None:
             closed |= states != OPEN
@@ -336,8 +334,7 @@ class Pair:
     def _nothing(self) -> Terms:
         """Terms of a step in which the surfaces do not meet."""
         none, flat = np.zeros(self.n), np.zeros(0, np.int64)
-        variables = np.zeros((0, WIDTH), np.int64)
-        gradient = np.zeros((0, WIDTH))
+        variables, gradient = np.zeros((0, WIDTH), np.int64), np.zeros((0, WIDTH))
         return Terms(none, none, none, flat, flat, variables, gradient, gradient, (none, none))
 
     def _since(self, terms: Terms) -> Terms:
@@ -361,14 +358,14 @@ class Pair:
         assert self.start is not None
         gap, area = self.start
         apart = gap > 2.0 * self.noise * float(self.full.max())
-        apart |= (gap == 0.0) & (area <= COVERED * self.full)
+        apart |= (gap == 0.0) & ~covered(area, self.full)
         return self.law is not None or not bool(apart.all())
 
     def begun(self) -> tuple[Floats, NDArray[np.bool_]]:
         """Gaps that the increment began with, and where they were open."""
         assert self.start is not None
         gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
-        return gap, (gap > self.noise * self.full) | (area <= COVERED * self.full)
+        return gap, (gap > self.noise * self.full) | ~covered(area, self.full)
 
     def persist(self, terms: Terms) -> None:
         """Take the gaps of a state for the start of an increment."""
@@ -383,7 +380,7 @@ class Pair:
         gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
         if self.law is None:
             return gap
-        return np.where(area > COVERED * self.full, gap, -self.conditions.start * self.area)
+        return np.where(covered(area, self.full), gap, -self.conditions.start * self.area)
 
     def _read(self, raw: _core._Gaps) -> Terms:
         self.seen = self.seen or bool(len(raw["constraint"]))
@@ -477,7 +474,7 @@ class Pair:
         if self.tied:
             return open_
         gap, area = open_.parts
-        seen = area > COVERED * self.full
+        seen = covered(area, self.full)
         self.core.offset = offset + np.where(seen, gap / np.where(seen, area, 1.0), 0.0)
         closed = self._read(self.core.evaluate(self.reference, self.reference))
         self.core.offset = offset
@@ -564,12 +561,13 @@ class Pair:
         """Energy of the pressure law [force*length]."""
         if self.law is None:
             return 0.0
-        seen = terms.area > COVERED * self.full
+        seen = covered(terms.area, self.full)
         return float(self.conditions.energy(self._at(terms))[seen].sum())
 
     def freeze(self, corrections: int) -> None:
         """Prepare for a correction, of this number in the attempt."""
-        self.frozen = corrections >= CORRECTIONS_BEFORE_FREEZE
+        # The owners of partly covered nodes may alternate.
+        self.frozen = corrections > WAITED
         self.redundant = max(REDUNDANT * FADES ** (corrections - 1), LEAST)
 
     def rows(
@@ -626,9 +624,9 @@ class Pair:
         shear = q if self.two else None
         _core.add_contact_forces(terms.constraint, dofs, gap, slip, p, shear, force, size)
 
-    def bound(self, p: Floats, of: int | slice = ALL) -> Floats:
-        """Largest shear traction under pressures, of all constraints or one."""
-        return np.asarray(np.minimum(self.friction[of] * p, self.shear_limit))
+    def bound(self, p: Floats) -> Floats:
+        """Largest shear traction of all constraints under their pressures."""
+        return np.asarray(np.minimum(self.friction * p, self.shear_limit))
 
     # -- increments --------------------------------------------------------------------
 
@@ -648,7 +646,7 @@ class Pair:
         """
         self.core.commit()
         self.frozen = False
-        seen = terms.area > COVERED * self.full
+        seen = covered(terms.area, self.full)
         was, self.area = self.area, np.where(seen, terms.area, self.full)
         self.committed_rate = self.rate
         if self.rubs:
@@ -715,4 +713,4 @@ def _surfaces(edges: Ints, nodes: Ints) -> Ints:
     return out
 
 
-__all__ = ["CLOSED", "COVERED", "OPEN", "SLIPPING", "Pair", "Terms"]
+__all__ = ["CLOSED", "OPEN", "SLIPPING", "Pair", "Terms"]

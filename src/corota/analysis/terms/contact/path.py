@@ -23,7 +23,7 @@ import numpy as np
 from corota.analysis.path_system import NOT_CONSERVATIVE, Metric, Point, SmoothPath, Tangent
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import MAX_EXTRA_CONTACT_ITERATIONS, ContactEquations
-from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SAME, SLIPPING
+from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, SLIPPING, covered
 from corota.analysis.terms.contact.problem import RightHandSides
 from corota.errors import ModelError, SingularError
 
@@ -38,12 +38,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
     Event = tuple[float, int, int, int]
-
-#: Message for slipping friction, where stability is unknown.
-SLIPS = (
-    "friction slips, and has no potential: the tangent is not symmetric, its pivots do not show "
-    "stability there (use dynamics)"
-)
 
 
 class ContactPathEquations(ContactEquations):
@@ -90,7 +84,12 @@ class ContactPathEquations(ContactEquations):
     @property
     def not_conservative(self) -> str:
         """Why pivots do not show stability."""
-        return SLIPS if any(p.rubs for p in self.term.pairs) else NOT_CONSERVATIVE
+        if not any(pair.rubs for pair in self.term.pairs):
+            return NOT_CONSERVATIVE
+        return (
+            "friction slips, and has no potential: the tangent is not symmetric, its pivots do not "
+            "show stability there (use dynamics)"
+        )
 
     def restart(self, loose: bool = False, like: Evaluation | None = None) -> None:
         """Begin an attempt with the states of the last commit, or of another evaluation."""
@@ -232,10 +231,6 @@ def path_system(system: System, notes: list[str]) -> SmoothPath | ContactPathEqu
     )
 
 
-#: Most changes in one increment.
-MOST_EVENTS = 12
-
-
 def predict_through_events(
     path: ContactPathEquations,
     base: Point,
@@ -268,7 +263,7 @@ def predict_through_events(
         return None
     way = EventPath(path, base, tangent, [s.copy() for s in committed.states])
     left, met = size, None
-    for _ in range(MOST_EVENTS):
+    while True:  # no constraint takes a state twice
         event = way.first(None if met is None else met[0])
         if event is None or event[0] >= left:
             break
@@ -387,7 +382,7 @@ class EventPath:
             if pair.tied or pair.law is not None or not pair.n:
                 continue
             (p, q), (dp, dq), (dgap, dslip) = tractions[k], rates[k], moves[k]
-            state, seen = self.states[k], self.at.contact_state.terms[k].area > COVERED * pair.full
+            state, seen = self.states[k], covered(self.at.contact_state.terms[k].area, pair.full)
             found = [
                 (_reach(self.gaps[k], -dgap, seen & (state == OPEN)), CLOSED),
                 (_reach(p, -dp, state != OPEN), OPEN),
@@ -417,4 +412,4 @@ def _reach(margin: Floats, rate: Floats, which: NDArray[np.bool_]) -> Floats:
     return np.where(shrinks, np.maximum(margin, 0.0) / np.where(shrinks, rate, 1.0), np.inf)
 
 
-__all__ = ["SLIPS", "ContactPathEquations", "path_system", "predict_through_events"]
+__all__ = ["ContactPathEquations", "path_system", "predict_through_events"]

@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.complementarity import lemke
-from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
+from corota.analysis.terms.contact.gaps import covered
+from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ class Pivoting:
         pair, terms, _ = self.pairs[k]
         if pair.tied or pair.law is not None or pair.shear_limit < np.inf or not pair.separates:
             return np.zeros(pair.n, bool)
-        able: NDArray[np.bool_] = (terms.area > COVERED * pair.full) & np.isfinite(pair.stiffness)
+        able: NDArray[np.bool_] = covered(terms.area, pair.full) & np.isfinite(pair.stiffness)
         return able
 
     def _first(self, base: States) -> list[Chosen]:
@@ -381,12 +382,10 @@ class Pivoting:
             for c in chosen:
                 if c.k == k:
                     mine[c.rows] = False
-            for i in np.flatnonzero(mine & (base[k] != CLOSED)).tolist():
-                p1 = p[i] + traction[pair.first + i]
-                follow = (
-                    slip_directions[k][i] * pair.bound(p1, i) if base[k][i] == SLIPPING else 0.0
-                )
-                traction[pair.first + pair.n + i] = follow - q[i]
+            free = np.flatnonzero(mine & (base[k] != CLOSED))
+            bound = pair.bound(p + traction[pair.first : pair.first + pair.n])
+            follow = np.where(base[k] == SLIPPING, slip_directions[k] * bound, 0.0)
+            traction[pair.first + pair.n + free] = (follow - q)[free]
         return out, slip_direction
 
 
@@ -401,7 +400,7 @@ def pivoted(problem: ContactProblem, at: Evaluation, right_sides: RightHandSides
     bases += [[s.copy() for s in b] for b in starts]
     for base in bases:
         for s, (pair, terms, _) in zip(base, pairs, strict=True):
-            s[terms.area <= COVERED * pair.full] = OPEN
+            s[~covered(terms.area, pair.full)] = OPEN
     return Pivoting(problem, at, right_sides).solve(bases)
 
 

@@ -18,7 +18,7 @@ from corota.analysis.linear.saddle_point import SaddlePointSystem
 from corota.analysis.linear.triplets import Triplets
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.gaps import CLOSED, COMPLIANCE, OPEN, SLIPPING
+from corota.analysis.terms.contact.gaps import CLOSED, COMPLIANCE, OPEN, PATIENCE, SLIPPING, WAITED
 from corota.analysis.terms.contact.linearization import linearized, stacked
 from corota.errors import SingularError
 
@@ -37,10 +37,6 @@ if TYPE_CHECKING:
     States = list[NDArray[np.int8]]
     Each = tuple[Pair, Terms, tuple[Floats, Floats]]
 
-#: Repetitions of a set of states before the whole linearized problem decides.
-MAX_STATE_REPEATS = 2
-#: Repetitions before the increment is given up.
-MAX_REPEATS_BEFORE_CUTBACK = 7
 #: Fraction of the friction bound from which a correction is repeated with slip, and how often.
 FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
 #: Slip over the length of an edge against which friction acts, whatever held before.
@@ -258,12 +254,12 @@ class ContactProblem:
             if any(c.any() for c in changed):
                 key = b"".join(s.tobytes() for s in wanted)
                 self.seen[key] = self.seen.get(key, 0) + 1
-                if self.seen[key] > MAX_REPEATS_BEFORE_CUTBACK:
+                if self.seen[key] >= PATIENCE:
                     raise GiveUp(
                         "the contact states cycle: the same nodes open, stick and slip as in "
                         f"{self.seen[key] - 1} earlier iterations"
                     )
-                self.pivoting = self.pivoting or self.seen[key] > MAX_STATE_REPEATS
+                self.pivoting = self.pivoting or self.seen[key] >= WAITED
         self.last = wanted
         return wanted
 

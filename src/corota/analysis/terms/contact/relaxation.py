@@ -38,10 +38,11 @@ from corota.analysis.newton import Outcome, newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.equations import (
     MAX_EXTRA_CONTACT_ITERATIONS,
-    PATIENCE,
+    SETTLED,
     ContactEquations,
 )
 from corota.analysis.terms.contact.forward import ForwardContact
+from corota.analysis.terms.contact.gaps import PATIENCE
 from corota.errors import ConvergenceError, SingularError
 
 if TYPE_CHECKING:
@@ -56,9 +57,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Largest number of corrections, of those per position, and residual at which a position is
-#: reached.
-MOST, EACH, REACHED = 400, 14, 1e-6
+#: Largest number of corrections, and of those per position.
+MOST, EACH = 400, 14
 #: Stiffness of the springs per stiffness of their nodes: first, at most, at least.
 FIRST, LARGEST, LEAST = 1e-2, 1e2, 1e-6
 #: Factors on it after a position was reached in few corrections, in more, or not at all; limit of
@@ -116,7 +116,7 @@ class _Creep:
         self.left = prescribed - u  # that supports still have to move
         most = settings.max_iterations + MAX_EXTRA_CONTACT_ITERATIONS
         self.last = replace(settings, max_iterations=most, patience=PATIENCE, reuse=None)
-        tolerance = max(REACHED, settings.tolerance)
+        tolerance = max(SETTLED, settings.tolerance)
         self.each = replace(self.last, tolerance=tolerance, max_iterations=EACH)
         self.corrections = 0
         #: Displacements that the bodies have to stay near.

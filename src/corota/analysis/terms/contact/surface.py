@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -273,8 +274,12 @@ def _check_lines(
 
 #: Turns of the boundary at a node that are smoothed: larger ones are corners, smaller ones none.
 CORNER, NONE = math.radians(50.0), math.radians(0.5)
-#: Shapes of the core: an element edge, a parabola round a node, halves of an edge.
-ELEMENT, SPLINE, FIRST_HALF, SECOND_HALF = range(4)
+
+
+class Shape(IntEnum):
+    """Pieces of a master, as the core numbers them."""
+
+    ELEMENT, SPLINE, FIRST_HALF, SECOND_HALF = range(4)
 
 
 def smoothed(points: Floats, master: Surface) -> tuple[Ints, Floats, Ints]:
@@ -298,26 +303,26 @@ def smoothed(points: Floats, master: Surface) -> tuple[Ints, Floats, Ints]:
     round_ = set(blunt_turns(points, master))
     nodes: list[tuple[int, int, int]] = []
     bulge: list[float] = []
-    shapes: list[int] = []
+    shapes: list[Shape] = []
 
-    def put(piece: tuple[int, int, int], shape: int, factor: float = 0.0) -> None:
+    def put(piece: tuple[int, int, int], shape: Shape, factor: float = 0.0) -> None:
         nodes.append(piece)
         bulge.append(factor)
         shapes.append(shape)
 
     for row, factor, own in zip(master.nodes.tolist(), master.bulge, of_edge, strict=True):
         if not round_.intersection(row):
-            put(tuple(row), ELEMENT, float(factor))
+            put(tuple(row), Shape.ELEMENT, float(factor))
             continue
         for a, b in own:
             if a not in round_ and b not in round_:
-                put((a, b, -1), ELEMENT)
+                put((a, b, -1), Shape.ELEMENT)
             elif a not in round_:
-                put((a, b, -1), FIRST_HALF)
+                put((a, b, -1), Shape.FIRST_HALF)
             elif b not in round_:
-                put((a, b, -1), SECOND_HALF)
+                put((a, b, -1), Shape.SECOND_HALF)
             if b in round_:
-                put((before[b], after[b], b), SPLINE)
+                put((before[b], after[b], b), Shape.SPLINE)
     return np.array(nodes, np.int64), np.array(bulge), np.array(shapes, np.int64)
 
 

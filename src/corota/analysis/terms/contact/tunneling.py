@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SAME, SLIPPING
+from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, SLIPPING, covered
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def passed(
     least = min(pair.reach, pair.width_across)
     nodes, state = pair.nodes, None
     through = np.arange(len(nodes))
-    unseen = terms.area <= COVERED * pair.full
+    unseen = ~covered(terms.area, pair.full)
     # Bodies that turn together go along arcs: who passes goes through seen from either of them.
     sides = (old[nodes, :2], new[nodes, :2]), (first.reshape(-1, 2), last.reshape(-1, 2))
     turns = [_turn(*side) for side in sides]
