@@ -4,7 +4,8 @@
 ``scripts/measures.py`` counts at half and at twice its value: endings that differ, the largest
 relative difference of forces, displacements and momenta, iterations over those with the constant as
 it is. A problem is run again only if it reads the constant. With an old FILE the run goes on where
-it was stopped; ``--only NAME`` runs some. Numbers of states and shapes and names are not varied.
+it was stopped; ``--only NAME`` runs some; ``--write`` puts the table, with the comments above the
+constants, into docs/contact-constants.md. Numbers of states and shapes and names are not varied.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -23,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmarks.common import table
+from benchmarks.common import machine, table, write_between
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     Row = dict[str, Any]
 
 ROOT = Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "contact-constants.md"
+COMMAND = "python -m benchmarks.contact_constants"
 FOLDER = "corota.analysis.terms.contact."
 #: Numbers of problems of :mod:`benchmarks.contact_problems`, and what is changed in them. All nine
 #: families; some choose states by pivoting, bring free bodies into contact, rest at kinks, pass
@@ -216,6 +219,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--keep", type=Path)
     parser.add_argument("--only", nargs="*", help="constants, as module.NAME")
+    parser.add_argument("--write", action="store_true", help=f"write the table into {PAGE.name}")
     args = parser.parse_args()
     names, constants = counted(), Constants()
     sys.meta_path.insert(0, _Finder(constants, set(names)))  # type: ignore[arg-type]
@@ -224,13 +228,12 @@ def main() -> int:
         kept = {r["name"]: r for r in map(json.loads, args.keep.read_text().splitlines())}
     before: dict[str, Row] = {}
     reads: dict[str, set[str]] = {}
-    for number, change in (*SAMPLE, DEAR):
+    left = [name for name in args.only or names if name not in kept]
+    for number, change in (*SAMPLE, DEAR) if left else ():
         key, constants.read = f"{number} {change}".strip(), set()
         before[key] = run(number, change)
         reads[key] = constants.read
-    for name in args.only or names:
-        if name in kept:
-            continue
+    for name in left:
         users = [job for job in (*SAMPLE, DEAR) if name in reads[f"{job[0]} {job[1]}".strip()]]
         row: Row = {"name": name, "used": len(users)}
         if len(users) > FEW:
@@ -243,21 +246,56 @@ def main() -> int:
         if args.keep:
             with args.keep.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(row) + "\n")
-    shown = [
-        [
-            name,
-            str(kept[name]["used"]),
-            *(
-                f"{len(r['ends'])}; {r['difference']:.0e}; {r['iterations']:.2f}"
-                for r in (kept[name][f"times {factor:g}"] for factor in FACTORS)
-            ),
-        ]
-        for name in args.only or names
-    ]
-    each = "other endings; difference; iterations"
-    head = ["constant", f"read by, of {len(SAMPLE) + 1}", f"half: {each}", f"twice: {each}"]
-    sys.stdout.write(f"{table(head, shown)}\n")
+    chosen = [name for name in args.only or names if name in kept]
+    text = lines(chosen, kept)
+    sys.stdout.write(f"{text}\n")
+    if args.write:
+        write_between(PAGE, "constants", f"`{COMMAND} --write`, {machine()}\n\n{text}")
     return 0
+
+
+def lines(names: list[str], kept: dict[str, Row]) -> str:
+    """Table of constants: value, what each is, effect of half and of twice."""
+
+    def effect(row: Row) -> str:
+        ends = f"{len(row['ends'])} end otherwise; " if row["ends"] else ""
+        work = f"{row['iterations']:.2f}"
+        if not ends and row["difference"] == 0.0 and work == "1.00":
+            return "none"
+        return f"{ends}{row['difference']:.0e}, {work}"
+
+    shown = []
+    for name in names:
+        module, own = name.split(".")
+        value, comment = meaning(module, own)
+        row = kept[name]
+        both = [effect(row[f"times {factor:g}"]) if row["used"] else "-" for factor in FACTORS]
+        shown.append([f"`{name}`", value, comment, str(row["used"]), *both])
+    return table(["constant", "value", "what it is", "read by", "half", "twice"], shown)
+
+
+def meaning(module: str, name: str) -> tuple[str, str]:
+    """Value of a constant as it is written, and the comment above it."""
+    home = ROOT / "src" / "corota" / Path(*FOLDER.split(".")[1:])
+    text = (home / f"{module}.py").read_text(encoding="utf-8")
+    node = next(node for node in ast.parse(text).body if name in assigned(node))
+    assert isinstance(node, ast.Assign)
+    target, value = node.targets[0], node.value
+    if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+        value = value.elts[[ast.unparse(t) for t in target.elts].index(name)]
+    above: list[str] = []
+    for line in reversed(text.splitlines()[: node.lineno - 1]):
+        if not line.startswith("#:"):
+            break
+        above.insert(0, line.removeprefix("#:").strip())
+    return ast.unparse(value), " ".join(above)
+
+
+def assigned(node: ast.stmt) -> set[str]:
+    """Names that a statement assigns."""
+    if not isinstance(node, ast.Assign):
+        return set()
+    return {n.id for target in node.targets for n in ast.walk(target) if isinstance(n, ast.Name)}
 
 
 if __name__ == "__main__":

@@ -32,10 +32,9 @@ if TYPE_CHECKING:
     States = NDArray[np.int8]
     Law = Callable[[Ints, Floats], tuple[Floats, Floats]]
 
-#: Pivots by unknown before the search is given up, and relative size of a pivot that is zero.
-PIVOTS, SMALL = 12, 1e-11
-#: Relative difference of ratios that tie.
-TIE = 1e-10
+#: Rounding bounds of Lemke's method: relative size of a pivot that is zero, and difference of
+#: ratios that tie.
+ZERO, TIE = 1e-11, 1e-10
 
 
 def lemke(c: Floats, m: Floats) -> tuple[Floats, NDArray[np.bool_]] | None:
@@ -64,7 +63,9 @@ def lemke(c: Floats, m: Floats) -> tuple[Floats, NDArray[np.bool_]] | None:
     base = np.arange(n)
     row = int(np.argmin(c))
     entering = 2 * n
-    for _ in range(PIVOTS * n + 20):
+    seen: set[bytes] = set()
+    while (now := base.tobytes()) not in seen:  # no basis comes twice, but by rounding
+        seen.add(now)
         leaving = int(base[row])
         pivot = table[row] / table[row, entering]
         column = table[:, entering].copy()
@@ -80,7 +81,7 @@ def lemke(c: Floats, m: Floats) -> tuple[Floats, NDArray[np.bool_]] | None:
             return np.maximum(x, 0.0), basic
         entering = leaving + n if leaving < n else leaving - n
         column = table[:, entering]
-        able = np.flatnonzero(column > SMALL * max(1.0, float(np.abs(column).max())))
+        able = np.flatnonzero(column > ZERO * max(1.0, float(np.abs(column).max())))
         if not len(able):
             return None
         row = _leaving(table, column, able, base, n)
@@ -106,9 +107,10 @@ def _leaving(
     return int(tied[np.argmax(column[tied])])
 
 
-#: Changes of the set before sweeps, and most sweeps.
+#: Limits of iterations in explicit steps: Newton's method on the set, and sweeps of Gauss and
+#: Seidel behind it.
 CHANGES, SWEEPS = 30, 5000
-#: Relative change of a force, or error of a law, that is rounding.
+#: Rounding bound of explicit steps: relative change of a force, or error of a law.
 ROUNDING = 1e-12
 
 

@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
 
-#: Additional iterations allowed for contact.
+#: Limit of iterations: those of Newton's method that contact may take besides.
 MAX_EXTRA_CONTACT_ITERATIONS = 24
-#: Residual from which only digits are missing: states that do not change any more are those of the
-#: end, and a position on the way is reached.
+#: Complementarity tolerance from which only digits are missing: states that do not change any more
+#: are those of the end, and a position on the way is reached.
 SETTLED = 1e-6
-#: Displacement of an increment, relative to its first correction, that counts as a jump, driven by
-#: supports and by forces.
+#: Search radius: displacement of an increment found by pivoting, relative to its first correction,
+#: beyond which it counts as a jump to another equilibrium; driven by supports, and by forces.
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
 
 

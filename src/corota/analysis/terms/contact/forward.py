@@ -38,9 +38,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Size of a matrix from which it is treated as sparse.
+#: Entries of a matrix from which it is treated as sparse (cost alone).
 DENSE = 100_000
-#: Depth, in edges, that a fixed surface may be pressed into another fixed one.
+#: Tolerance of data: depth, in edges, that a fixed surface may be pressed into another fixed one.
 DEPTH = 1e-6
 
 

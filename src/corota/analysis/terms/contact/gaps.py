@@ -16,17 +16,19 @@ if TYPE_CHECKING:
 
 #: States of a constraint, as the laws of the core number them.
 OPEN, CLOSED, SLIPPING = 0, 1, 2
-#: Relative difference of lengths, areas, parts of a way and forces that is rounding.
+#: Rounding bound: relative difference of lengths, areas, parts of a way and forces that is
+#: rounding.
 SAME = 1e-9
-#: Compliance of closed constraints relative to that of their nodes: constraints that follow from
-#: others then leave a matrix regular, and share the force.
+#: Regularization of redundant constraints: compliance of closed ones relative to that of their
+#: nodes: constraints that follow from others then leave a matrix regular, and share the force.
 COMPLIANCE = 1e-10
-#: Bisections of an interval, to its rounding.
+#: Bisections of an interval down to its rounding.
 HALVINGS = 44
 #: Tries without progress, or returns of a set of states, before all states are chosen together or a
 #: kink is searched, and before that is given up.
 WAITED = 3
-#: And before an increment is cut: few that take more converge.
+#: Tries without progress, or returns of a set of states, before an increment is cut: few that take
+#: more converge.
 PATIENCE = 8
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.gaps import covered
+from corota.analysis.terms.contact.gaps import PATIENCE, covered
 from corota.analysis.terms.contact.pair import OPEN
 from corota.analysis.terms.contact.tunneling import UNSEEN, other_side, times_of_crossing
 from corota.mesh.parts import part_of_nodes
@@ -106,12 +106,11 @@ def _first_contact(term: ContactTerm, contact_state: ContactState, meets: bool) 
     return late
 
 
-#: Depth behind the first contact at which an increment ends [slave edges].
+#: Error in the instant of impact: depth behind the first contact at which an increment ends [slave
+#: edges].
 BEYOND = 1e-4
 #: Gap from which an increment leaves a remainder [slave edges], and the fraction left.
 WIDE, LEFT = 0.1, 0.05
-#: Largest number of successive increments shortened in this way: surfaces may also pass closely.
-MOST_IN_A_ROW = 8
 
 
 class Approach:
@@ -155,7 +154,8 @@ class Approach:
         """The increment, or the shorter one that ends at first contact [time]."""
         self.meets = self.limited = False
         term = self.term
-        if not term.opens or self.in_a_row >= MOST_IN_A_ROW:
+        # Surfaces may also pass closely.
+        if not term.opens or self.in_a_row >= PATIENCE:
             return dt
         x = rates = acceleration = None
         until = dt

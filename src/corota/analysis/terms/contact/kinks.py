@@ -36,16 +36,15 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Share of a difference of contact forces that must be a jump.
+#: Share of a difference of contact forces that a jump must have (a gradual change halves with the
+#: way).
 JUMP = 0.25
-#: Part of the way, and share of the least jump: forces that differ by less on so short a way change
-#: gradually.
-SMALL, GRADUAL = 2.0**-8, 0.5
-#: Width in which the kink is searched again, in distances between its sides.
+#: Search radius of a kink in the next iterations, in distances between its sides.
 WIDTH = 4.0
-#: And before, nearby, in distances that the last correction was to go.
+#: Search radii before that one, in distances that the last correction was to go: nearer jumps come
+#: first.
 NEAR = (0.2, 3.0)
-#: Least width in which it is searched, over the rounding of gaps.
+#: Rounding bound: least search radius, over the rounding of gaps.
 ROUNDED = 1e3
 
 
@@ -104,10 +103,9 @@ class Sides:
                 high, last = middle, force
             else:
                 low, first = middle, force
-            if high - low <= SMALL and float(np.abs(last - first).max()) <= GRADUAL * JUMP * whole:
+            if float(np.abs(last - first).max()) <= JUMP * whole:
                 return None
-        jump = last - first
-        return (low, high, jump) if float(np.abs(jump).max()) > JUMP * whole else None
+        return low, high, last - first
 
 
 def found(sides: Sides, here: Floats, there: Floats) -> Kink | None:
@@ -210,7 +208,8 @@ def _kink(
 #: Jumps beyond the forces of both sides in which an equilibrium is searched: farther, the bodies do
 #: not rest there.
 OUTSIDE = 2.0
-#: Remainder of two corrections that cancel each other, relative to the last one.
+#: Test of a cycle of two iterates: remainder of two corrections that cancel each other, relative to
+#: the last one.
 TO_AND_FRO = 0.2
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.gaps import WAITED
-from corota.analysis.terms.contact.surface import CORNER, blunt_turns, sharp_corners
+from corota.analysis.terms.contact.surface import CORNER, NONE, blunt_turns, sharp_corners
 from corota.model.contact import ContactPair, RigidCurve
 
 if TYPE_CHECKING:
@@ -24,11 +24,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Part of the force of a pair from which a node carries it alone, and of its friction bound from
-#: which friction is used up.
+#: Message alone: part of the force of a pair from which a node carries it alone, and of its
+#: friction bound from which friction is used up.
 WHOLE = 0.99
-#: Turns at a vertex between which a surface is a round [rad].
-ROUND_FROM, ROUND_TO = 1e-3, 0.6
 
 
 def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
@@ -120,7 +118,8 @@ def _corners(contact_term: ContactTerm) -> NDArray[np.bool_]:
     return found
 
 
-#: Slave edges that a round corner should measure along its radius, and the least turn of one.
+#: Note alone: slave edges that a round corner should measure along its radius, and the least turn
+#: of one.
 EDGES, TURN = 2.0, math.radians(20.0)
 
 
@@ -144,7 +143,7 @@ def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
         a, b, c = points[pair.nodes[chain], :2]
         first, second = b - a, c - b
         turn = abs(math.atan2(first[0] * second[1] - first[1] * second[0], float(first @ second)))
-        if ROUND_FROM < turn < ROUND_TO:
+        if NONE < turn < CORNER:
             depth = math.hypot(*first) * turn / 12.0
             return (
                 f"contact pair {pair.name!r}: the slave surface is round, has friction, and a "
@@ -210,7 +209,8 @@ def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
     )
 
 
-#: Depth from which a corner is reported, and beyond which it is on the far side of a body [edges].
+#: Note alone: depth from which a penetration is reported, and beyond which it is on the far side of
+#: a body [edges].
 NAMED, FAR = 0.1, 2.0
 
 
@@ -258,8 +258,8 @@ def _depth(x: Floats, pair: Pair, corner: int) -> tuple[float, tuple[int, int]]:
     return float((d[k, 0] * r[k, 1] - d[k, 1] * r[k, 0]) / square[k]), (a, b)
 
 
-#: Change of a force beside its largest value, relative to it, from which an increment may have
-#: missed the peak.
+#: Note alone: change of a force beside its largest value, relative to it, from which an increment
+#: may have missed the peak.
 STEEP = 0.05
 
 

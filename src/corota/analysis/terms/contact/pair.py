@@ -11,7 +11,7 @@ import numpy as np
 
 import corota._core as _core
 from corota.analysis.terms.contact.discrete_gradient import discrete_gradient
-from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SLIPPING, WAITED, Terms, covered
+from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, SLIPPING, WAITED, Terms, covered
 from corota.analysis.terms.contact.setup import contact_core, tie_core
 from corota.arrays import distinct
 from corota.model.contact import METHODS, ContactPair, RigidCurve, Tie
@@ -36,25 +36,24 @@ if TYPE_CHECKING:
         Floats | None,
     ]
 
-#: Deformations below this fraction of the model's size are rounding.
-NONE = 1e-8
-#: Change of the pressure of a corner beside a closed node per error of its gap, relative to its
-#: stiffness: in the first correction, its factor from each to the next, and its least value. It
-#: keeps dependent constraints solvable. If it stayed large, a corner that is almost at the node
-#: would take over its pressure in many corrections; it is zero in what they converge to.
+#: Proximal term of dependent constraints: change of the pressure of a corner beside a closed node
+#: per error of its gap, relative to its stiffness: in the first correction, its factor from each to
+#: the next, and its least value. It keeps dependent constraints solvable. If it stayed large, a
+#: corner that is almost at the node would take over its pressure in many corrections; it is zero in
+#: what they converge to.
 REDUNDANT, FADES, LEAST = 1e-4, 0.1, 1e-8
-#: Covered fraction of its area below which a node passes its part to a neighbor.
+#: Discretization at the ends of the master: covered fraction of its area below which a node passes
+#: its part to a neighbor.
 WEAK = 0.2
-#: And that above which it takes it back for good.
+#: Discretization at the ends of the master: covered fraction above which a node takes its part back
+#: for good.
 AMPLE = 0.5
-#: Coefficient that stands for zero where it is larger in other steps.
-LEAST_FRICTION = 1e-9
 #: Variables of a term, as in the core.
 WIDTH = 20
 #: Edges by which its friction would move a slave node whose stiffness does not count, and the slip
 #: in edges that turns this friction round.
 WEIGHTLESS, TURNS_ROUND = 0.1, 1e-6
-#: Share of the friction that a surface can bear above which it slides as a whole.
+#: Friction work: share of the friction that a surface can bear above which it slides as a whole.
 TURNS_BACK = 0.5
 
 
@@ -170,7 +169,7 @@ class Pair:
         if isinstance(self.item, ContactPair) and self.rubs:
             found = self.item.friction_at(step, share, self.rate, np.maximum(pressure, 0.0))
             # Tractions stay unknowns where a coefficient is zero for a time.
-            self.friction = np.maximum(found, LEAST_FRICTION)
+            self.friction = np.maximum(found, SAME)
 
     def _conditions(self) -> _core.ContactLaw:
         """The law of the constraints: what gaps, slips and tractions owe each other."""
@@ -223,7 +222,7 @@ class Pair:
                 self.full,
                 (old, x),
                 getattr(self.item, "master", None),
-                NONE * self.size,
+                SAME * self.size,
             )
             terms.slip = terms.between.slip
         return self._at_planes(self._since(terms), x)
@@ -309,13 +308,13 @@ class Pair:
             if not isinstance(node, int | np.integer):
                 return -1
             turns = self.item.master.turns and not constrained[node, 2]
-            fixed = abs(abs(float(constrained[node, :2] @ along)) - 1.0) < NONE
+            fixed = abs(abs(float(constrained[node, :2] @ along)) - 1.0) < SAME
             return int(node) if fixed and not turns else None
         nodes = self.slave.node_list if self.master is None else self.master.node_list
         nodes = nodes[nodes != self.nodes[k]]
         apart = self.reference[nodes, :2] - self.reference[self.nodes[k], :2]
-        same = np.abs(np.abs(constrained[nodes, :2] @ along) - 1.0) < NONE
-        found = np.flatnonzero(same & (np.abs(apart @ along) <= NONE * self.size))
+        same = np.abs(np.abs(constrained[nodes, :2] @ along) - 1.0) < SAME
+        found = np.flatnonzero(same & (np.abs(apart @ along) <= SAME * self.size))
         if not len(found):
             return None
         return int(nodes[found[np.argmin(np.hypot(*apart[found].T))]])

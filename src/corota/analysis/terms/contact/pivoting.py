@@ -37,10 +37,9 @@ if TYPE_CHECKING:
     #: Correction of dofs and multipliers, its states, signs of slipping tractions.
     Found = tuple[Floats, States, list[Floats]]
 
-#: Most constraints that are chosen together, and open ones among them next to closing.
+#: Size of the linear complementarity problem: most constraints (its cost grows with the cube), and
+#: the open ones in it from the start.
 MOST, OPEN_ONES = 160, 16
-#: Rounds that add violated constraints.
-ROUNDS = 4
 
 
 @dataclass
@@ -89,8 +88,8 @@ class Pivoting:
             Initial states, the best first; states with a singular tangent are skipped.
         """
         for base in bases:
-            chosen = self._first(base)
-            for _ in range(ROUNDS):
+            chosen: list[Chosen] | None = self._first(base)
+            while chosen is not None:
                 try:
                     found = self._with(base, chosen)
                 except SingularError:
@@ -98,10 +97,9 @@ class Pivoting:
                 if found is None:
                     break
                 z, states, slip_directions = found
-                more = self._violated(z, states, chosen)
-                if more is None:
+                chosen = self._violated(z, states, chosen)
+                if chosen is None:
                     return z, states, slip_directions
-                chosen = more
         return None
 
     # -- which constraints ------------------------------------------------------------

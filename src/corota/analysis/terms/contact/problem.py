@@ -18,7 +18,15 @@ from corota.analysis.linear.saddle_point import SaddlePointSystem
 from corota.analysis.linear.triplets import Triplets
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.gaps import CLOSED, COMPLIANCE, OPEN, PATIENCE, SLIPPING, WAITED
+from corota.analysis.terms.contact.gaps import (
+    CLOSED,
+    COMPLIANCE,
+    OPEN,
+    PATIENCE,
+    SAME,
+    SLIPPING,
+    WAITED,
+)
 from corota.analysis.terms.contact.linearization import linearized, stacked
 from corota.errors import SingularError
 
@@ -37,12 +45,11 @@ if TYPE_CHECKING:
     States = list[NDArray[np.int8]]
     Each = tuple[Pair, Terms, tuple[Floats, Floats]]
 
-#: Fraction of the friction bound from which a correction is repeated with slip, and how often.
-FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
-#: Slip over the length of an edge against which friction acts, whatever held before.
+#: Merit of a correction: fraction of the friction bound from which it is repeated with slip.
+FRICTION_EXCESS = 2.0
+#: Merit of a correction: slip over the length of an edge against which friction acts, whatever held
+#: before.
 FAR_SLIP = 0.01
-#: Relative difference of two gaps that is rounding.
-EQUAL = 1e-6
 
 
 @dataclass
@@ -335,7 +342,7 @@ class ContactProblem:
         """
         early = self.corrections <= 2 and not self.bounded
         released = [np.zeros(p.n, bool) for p in self.term.pairs]
-        for _ in range(MAX_SLIP_CORRECTIONS):
+        for _ in range(WAITED):
             new = [s.copy() for s in states]
             slip_directions = dict(self.slip_directions)
             rates = self.gap_rates(at, found[0][:, 0]) if any(r.any() for r in released) else None
@@ -415,7 +422,7 @@ class ContactProblem:
             for s, gap in zip(tried, gaps, strict=True):
                 if count == 0:
                     # A flat side comes to rest on all of its nodes.
-                    s[gap <= nearest * (1.0 + EQUAL)] = CLOSED
+                    s[gap <= nearest * (1.0 + SAME)] = CLOSED
                     continue
                 near = np.argsort(gap, kind="stable")[:count]
                 s[near[gap[near] < np.inf]] = CLOSED

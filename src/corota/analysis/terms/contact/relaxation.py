@@ -57,14 +57,14 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Largest number of corrections, and of those per position.
-MOST, EACH = 400, 14
-#: Stiffness of the springs per stiffness of their nodes: first, at most, at least.
+#: Limit of corrections in a relaxation.
+MOST = 400
+#: Proximal point method: stiffness of the springs per stiffness of their nodes: first, at most, at
+#: least.
 FIRST, LARGEST, LEAST = 1e-2, 1e2, 1e-6
-#: Factors on it after a position was reached in few corrections, in more, or not at all; limit of
-#: few.
-EASED, KEPT, TIGHTENED, FEW = 0.25, 0.5, 8.0, 6
-#: Largest distance between positions, in shortest edges of a slave surface.
+#: Factors on this stiffness after a position was reached, and where none was.
+EASED, TIGHTENED = 0.25, 8.0
+#: Search radius: largest distance between positions, in shortest edges of a slave surface.
 FARTHEST = 0.5
 
 
@@ -117,7 +117,7 @@ class _Creep:
         most = settings.max_iterations + MAX_EXTRA_CONTACT_ITERATIONS
         self.last = replace(settings, max_iterations=most, patience=PATIENCE, reuse=None)
         tolerance = max(SETTLED, settings.tolerance)
-        self.each = replace(self.last, tolerance=tolerance, max_iterations=EACH)
+        self.each = replace(self.last, tolerance=tolerance)
         self.corrections = 0
         #: Displacements that the bodies have to stay near.
         self.within: Floats | None = None
@@ -146,7 +146,7 @@ class _Creep:
             if self._leaves(out.u):
                 break
             self.z, self.left = out.u, np.zeros_like(self.left)
-            share *= EASED if out.iterations <= FEW else KEPT
+            share *= EASED
             if share >= LEAST:
                 continue
             out = self._place(0.0)
@@ -243,15 +243,15 @@ class _Creep:
         return out
 
 
-#: Largest number of increments, and of those in which the unbalanced force has not halved.
-MOST_INCREMENTS, STALLED = 6000, 1500
-#: Unbalanced force at rest over the largest force.
+#: Dynamic relaxation: largest number of increments in which the unbalanced force does not halve.
+STALLED = 1500
+#: Complementarity tolerance of rest: unbalanced force over the largest force.
 AT_REST = 1e-4
-#: Increments between two updates of the mass.
+#: Dynamic relaxation: increments between two updates of the mass.
 UPDATE = 50
-#: Mass over the least one that is stable by the rows of the tangent.
+#: Stability of central differences: mass over the least one by Gershgorin's bound.
 SAFETY = 2.0
-#: Smallest mass over the largest one, for dofs without stiffness.
+#: Rounding bound: smallest mass over the largest one, for dofs without stiffness.
 LEAST_MASS = 1e-6
 #: Fraction of an overlap that remains after an increment: all of it, as in central differences, or
 #: less. A gap that jumps back and forth has no position of rest if the overlap is removed.
@@ -331,7 +331,8 @@ def come_to_rest(
     parts = max(1, int(np.ceil(float(np.abs(left).max()) / (LONGEST_STEP * edge))))
     mass = np.ones_like(u)
     kinetic, least, since = 0.0, np.inf, parts
-    for i in range(MOST_INCREMENTS):
+    i = 0
+    while True:  # the force halves until the bodies rest, or does not
         driven = left / parts if i < parts else np.zeros_like(u)
         try:
             at = system.evaluate(u, step_time)
@@ -356,8 +357,7 @@ def come_to_rest(
         last, kinetic = kinetic, float((mass * v * v)[~held].sum())
         if i >= parts and kinetic < last:
             v, kinetic = np.zeros_like(v), 0.0
-        u = u + v
-    return None
+        u, i = u + v, i + 1
 
 
 def _stable_mass(system: System, values: Floats) -> Floats:

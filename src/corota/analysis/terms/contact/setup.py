@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 #: Default search distance of pairs, in edges.
 REACH = 4.0
-#: Limit of edges times edges that are compared all with all.
+#: Limit of edges times edges that are compared all with all (cost alone).
 MOST_LOOKED_AT = 20_000_000
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.gaps import SAME
+from corota.analysis.terms.contact.messages import NAMED
 from corota.analysis.terms.contact.tunneling import AT_ONCE, other_side
 from corota.errors import ModelError
 from corota.mesh.parts import nodes_of_cells, part_of_nodes, parts_without
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Cosine between the normals of slave and curve from which the slave faces away; as far on the
-#: other side it faces the curve, and between them neither.
+#: Check of data: cosine between the normals of slave and curve from which the slave faces away; as
+#: far on the other side it faces the curve, and between them neither.
 BACK = 0.2
 
 
@@ -160,10 +161,6 @@ def _parts(rows: int, width: int) -> Iterator[slice]:
     return (slice(begin, begin + count) for begin in range(0, rows, count))
 
 
-#: Depth, relative to the distance of slave nodes, that a neighbor of the slave surface may have.
-SHALLOW = 0.1
-
-
 def passed_through(model: Model, u: Floats) -> list[str]:
     """Notes on bodies of which a part without a pair lies behind their rigid curve.
 
@@ -187,7 +184,8 @@ def passed_through(model: Model, u: Floats) -> list[str]:
         way = np.linalg.norm(after - before, axis=1)
         depth = np.where(_depth(curve, before) > 0.0, 0.0, _depth(curve, after))
         depth[depth > way] = 0.0  # it came there around an end
-        shallow = SHALLOW * float(np.ptp(mesh.points[slaves], axis=0).max()) / len(slaves)
+        # What may lie deeper than the slave surface beside it [mean distance of slave nodes].
+        shallow = NAMED * float(np.ptp(mesh.points[slaves], axis=0).max()) / len(slaves)
         deepest = int(np.argmax(depth))
         if depth[deepest] > shallow:
             notes.append(

@@ -26,16 +26,17 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Fraction of the reach, and of the width of a body, that a node may move without this check.
+#: Search radius: fraction of the reach, and of the width of a body, that a node may move without
+#: this check.
 UNSEEN = 0.5
-#: Depth over the reach up to which a node touches: a rest of Newton's method, as where a node of
-#: the other side carries both.
+#: Complementarity tolerance: depth over the reach up to which a node touches: a rest of Newton's
+#: method, as where a node of the other side carries both.
 TOUCHES = 1e-8
 #: Rotation of a side in an increment [rad] up to which its ways count as straight.
 TURNS = 0.2
-#: Nodes times pieces that are compared at once.
+#: Nodes times pieces that are compared at once (memory alone).
 AT_ONCE = 1_000_000
-#: Angle of the chords of arcs [rad].
+#: Angle of the chords of arcs in this check [rad].
 CHORD = math.radians(4.0)
 
 
