@@ -13,8 +13,13 @@ import pytest
 import corota as ct
 from benchmarks.contact_problems import problem
 from benchmarks.contact_torture import run
+from corota.analysis.equations import System
+from corota.analysis.failure import ElementFailure
 from corota.analysis.linear import saddle_point
+from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.procedures.stopping import unstable
+from corota.analysis.terms.contact.equations import ContactEquations
+from corota.analysis.terms.contact.relaxation import come_to_rest
 from corota.results.observer import BaseObserver
 
 #: Numbers of the torture set that stopped before.
@@ -127,9 +132,15 @@ def test_a_clip_finishes_where_no_relaxed_position_balances():
     assert any("no springs" in note for note in notes)  # the state that is accepted has none
 
 
-@pytest.mark.parametrize("number", [1183, pytest.param(1767, marks=pytest.mark.slow)])
+SLOW = [pytest.param(number, marks=pytest.mark.slow) for number in (1767, 1335)]
+
+
+@pytest.mark.parametrize("number", [1183, *SLOW])
 def test_a_damped_motion_starts_newtons_method_where_relaxation_finds_nothing(number):
-    """A clip whose gaps jump, without friction; a block on a wavy floor, with friction 1."""
+    """A clip whose gaps jump, without friction; blocks on wavy floors, with friction.
+
+    The corner of the last block folds so far that an element would invert in the motion.
+    """
     notes = []
 
     class Log(BaseObserver):
@@ -149,6 +160,37 @@ def test_a_damped_motion_starts_newtons_method_where_relaxation_finds_nothing(nu
             forces.append([frame.scalars[f"{name}: force {axis}"] for axis in "xy"])
         size = max(np.abs(frame.RF).max(), 1e-30)
         np.testing.assert_allclose(np.sum(forces, axis=0), 0.0, atol=1e-7 * size)
+
+
+def test_a_damped_motion_in_which_an_element_fails_goes_on_with_more_mass(monkeypatch):
+    """Elements that fail where a node moves farther than .02 in an increment."""
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, 3, 3, "quad4"))
+    model.section("all", element="Q4I", material=ct.Elastic(E=10.0, nu=0.3), plane="strain")
+    model.contact("bottom", ct.RigidCurve.line((-1.0, 0.0), (2.0, 0.0)), friction=0.2)
+    model.fix("top", x=0.0, y=-0.1)
+    system = System(model, Multifrontal())
+    system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
+    start = system.conditions.supports.at(1.0, np.zeros(system.n_dofs))
+    inner, last, failed = system.evaluate, [start], []
+
+    def evaluate(u, step_time):
+        if np.abs(u - last[0]).max() > 0.02:
+            failed.append(u)
+            raise ElementFailure("inverted")
+        last[0] = u.copy()
+        return inner(u, step_time)
+
+    monkeypatch.setattr(system, "evaluate", evaluate)
+    problem = ContactEquations(system)
+    rest = come_to_rest(problem, start, np.zeros_like(start), 1.0, 1.0 / 3.0)
+    assert rest is not None
+    assert failed
+    # Uniform compression under clamped ends: the floor carries what the top does.
+    force = inner(rest.u, 1.0).internal[1 :: system.n_dofs // model.mesh.n_nodes]
+    top = model.mesh.nodes_of("top")
+    bottom = model.mesh.nodes_of("bottom")
+    assert force[bottom].sum() == pytest.approx(-force[top].sum(), rel=1e-3)
+    assert force[bottom].sum() > 0.9
 
 
 def test_a_body_that_contact_never_holds_is_said_to_rest_anywhere():

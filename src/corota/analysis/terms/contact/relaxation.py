@@ -256,6 +256,8 @@ LEAST_MASS = 1e-6
 #: Fraction of an overlap that remains after an increment: all of it, as in central differences, or
 #: less. A gap that jumps back and forth has no position of rest if the overlap is removed.
 REMAINS = (1.0, 0.95)
+#: Factor on the mass where an element fails, and the largest one before the motion is given up.
+HEAVIER, HEAVIEST = 4.0, 1e3
 #: Longest displacement of supports in an increment, in shortest edges of a slave surface.
 LONGEST_STEP = 0.02
 
@@ -329,7 +331,7 @@ def come_to_rest(
     contact = _Forces(problem.term, Energies(system), 1.0)
     contact.remains = remains
     parts = max(1, int(np.ceil(float(np.abs(left).max()) / (LONGEST_STEP * edge))))
-    mass = np.ones_like(u)
+    mass, heavier = np.ones_like(u), 1.0
     kinetic, least, since = 0.0, np.inf, parts
     i = 0
     while True:  # the force halves until the bodies rest, or does not
@@ -337,12 +339,19 @@ def come_to_rest(
         try:
             at = system.evaluate(u, step_time)
             if i % UPDATE == 0:
-                mass = _stable_mass(system, at.values)
+                mass = heavier * _stable_mass(system, at.values)
             inverse = np.where(held, 0.0, 1.0 / mass)
             free = np.where(held, driven, v - inverse * at.residual)
             before = np.where(held, driven, v)
             force = contact.act(u, v, free, before, 1.0, inverse, step_time)
-        except (ElementFailure, ConvergenceError):
+        except ElementFailure:
+            # The motion was too fast: it goes on from rest where it came from, with more mass.
+            heavier, mass = HEAVIER * heavier, HEAVIER * mass
+            if heavier > HEAVIEST:
+                return None
+            u, v, kinetic = np.where(held, u, u - v), np.where(held, v, 0.0), 0.0
+            continue
+        except ConvergenceError:
             return None
         unbalanced = np.where(held, 0.0, at.residual - force)
         largest = max(float(np.abs(at.internal).max()), float(np.abs(force).max()))
