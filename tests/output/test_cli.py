@@ -226,6 +226,19 @@ def test_info_describes_decks_and_results(tmp_path, here):
     assert record["element sets"] == {"EALL": 2}
 
 
+def test_info_names_the_contact_of_a_results_file(tmp_path, capsys):
+    """Method, law and friction are those of the pair, not defaults (mortar, no friction)."""
+    mesh = corota.mesh.rectangle(2.0, 1.0, nx=2, ny=1)
+    model = corota.Model(mesh)
+    model.section("all", element="Q4I", material=corota.Elastic(E=1000.0, nu=0.3))
+    model.fix("top", x=0.0, y=-0.01)
+    floor = corota.RigidCurve.line((-1.0, 0.0), (3.0, 0.0))
+    model.contact("bottom", floor, friction=0.2, method="node_to_segment")
+    corota.solve(model, corota.Static(), threads=1).write(tmp_path / "a.vtkhdf")
+    assert cli.main(["info", str(tmp_path / "a.vtkhdf")]) == 0
+    assert "node_to_segment, hard, friction 0.2" in capsys.readouterr().out
+
+
 def test_check_counts_and_does_not_solve(tmp_path, here, monkeypatch, deck):
     monkeypatch.chdir(tmp_path)
     done = here("check", DECK)
