@@ -27,8 +27,13 @@ use crate::elements::Element;
 use crate::elements::element::Wanted;
 use crate::materials::Clock;
 
-/// Points of Gauss's rule on the increment, each of weight one half.
-const ALONG: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+/// Points of Gauss's rule on the increment and their weights.
+const ALONG: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
 
 /// Where the step starts and what it is.
 pub struct Step<'a, const N: usize, const M: usize> {
@@ -183,20 +188,20 @@ where
     let flows = flowed(section, history);
     if flows && accounts {
         end.stiffness = blocks::<f64, N, M>();
-        for s in ALONG {
+        for (s, weight) in ALONG {
             let q = between_ends(&f0.q, &f1.q, s);
             history.clock = passed(clock, s);
             let at = local::<E, f64, N, M, A>(x, &q, section, history, step.tangent);
             failed |= at.failed;
             for a in 0..N {
                 for i in 0..M {
-                    mean[a][i] += 0.5 * at.force[a][i];
+                    mean[a][i] += weight * at.force[a][i];
                 }
                 for b in a..N {
                     for i in 0..M {
                         for j in 0..M {
                             // Twice the derivative of the mean, as below.
-                            end.stiffness[a][b][i][j] += s * at.stiffness[a][b][i][j];
+                            end.stiffness[a][b][i][j] += 2.0 * weight * s * at.stiffness[a][b][i][j];
                         }
                     }
                 }
@@ -275,16 +280,16 @@ where
     if accounts {
         energy[0] = E::absorbed(x, step.u0, section, history, step.nlgeom);
     }
-    for s in ALONG {
+    for (s, weight) in ALONG {
         history.clock = passed(clock, s);
         let at = respond(&between_ends(step.u0, step.u1, s), history, step.tangent);
         for (to, from) in internal.as_flattened_mut().iter_mut().zip(at.force.as_flattened()) {
-            *to += 0.5 * from;
+            *to += weight * from;
         }
         let all = tangent.as_flattened_mut().as_flattened_mut().as_flattened_mut();
         let part = at.stiffness.as_flattened().as_flattened().as_flattened();
         for (to, from) in all.iter_mut().zip(part) {
-            *to += 0.5 * s * from;
+            *to += weight * s * from;
         }
     }
     // The history is that of the end again.
