@@ -88,7 +88,7 @@ class Deck:
     #: Reference nodes whose rotation no coupling carries on.
     without_moment: set[int] = field(default_factory=set)
     #: Whether a card turns on NLGEOM in all steps that do not say otherwise.
-    nonlinear: bool = False
+    nonlinear: list[str] = field(default_factory=list)
     #: Whether the model is built: all cards are read.
     building: bool = False
     #: Refused element types: references to their elements are not reported again.

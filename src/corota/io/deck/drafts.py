@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from corota.model.steps import Output, Step
     from corota.model.viscoelastic import WLF
 
+    #: Numbers of steps.
+    Numbers = tuple[int, ...]
+
 
 @dataclass(eq=False, repr=False)
 class NodeBlock:
@@ -440,6 +443,23 @@ class InteractionDraft:
     separates: bool = True
     #: ``*CONTACT DAMPING`` by a fraction of the critical one.
     damping: Card | None = None
+    #: Interactions with other laws that begin with steps.
+    later: dict[int, InteractionDraft] = field(default_factory=dict)
+
+    def spans(
+        self, steps: int, acts: Numbers | None
+    ) -> list[tuple[InteractionDraft, Numbers | None]]:
+        """The interaction of each law, and the steps among `acts` (None: all) in which it holds."""
+        if not self.later:
+            return [(self, acts)]
+        among = range(1, steps + 1) if acts is None else acts
+        laws = {1: self, **self.later}
+        ends = [*sorted(laws)[1:], steps + 1]
+        spans = [
+            (laws[first], tuple(k for k in among if first <= k < end))
+            for first, end in zip(sorted(laws), ends, strict=True)
+        ]
+        return [(law, numbers) for law, numbers in spans if numbers]
 
     @property
     def rubs(self) -> bool:

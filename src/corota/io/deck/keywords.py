@@ -325,7 +325,6 @@ _TABLE: dict[str, Keyword] = {
         card("contact.surface_behavior"),
         "PRESSURE-OVERCLOSURE NOSEPARATION",
         "AUGMENTEDLAGRANGE DIRECT PENALTY",
-        place="model",
     ),
     "CONTACT DAMPING": Keyword(
         card("contact.contact_damping"), "DEFINITION", "TANGENTFRACTION", place="model"
@@ -336,6 +335,7 @@ _TABLE: dict[str, Keyword] = {
         "SLIPTOLERANCE LAGRANGE ELASTICSLIP SHEARTRACTIONSLOPE",
     ),
     "CHANGE FRICTION": Keyword(card("contact.change_friction"), "INTERACTION RESET RAMP"),
+    "CHANGE SURFACE BEHAVIOR": Keyword(card("contact.change_surface_behavior"), "INTERACTION"),
     "MODEL CHANGE": Keyword(card("contact.model_change"), "TYPE ADD REMOVE ACTIVATE"),
     "CLEARANCE": Keyword(card("contact.clearance"), "SLAVE MASTER VALUE", place="model"),
     "TIE": Keyword(

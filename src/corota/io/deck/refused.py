@@ -79,7 +79,7 @@ _LINE = "only planar solids, trusses, beams and springs are part of this version
 
 #: Cards that change the answer and are refused by name.
 UNSUPPORTED: dict[str, str] = {
-    **dict.fromkeys(("CHANGECONTACTTYPE", "CHANGESURFACEBEHAVIOR"), _CHANGE),
+    "CHANGECONTACTTYPE": _CHANGE,
     "SURFACESMOOTHING": "give round rigid surfaces by *SURFACE, TYPE=SEGMENTS with CIRCL",
     "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
     **dict.fromkeys(

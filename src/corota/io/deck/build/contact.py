@@ -102,29 +102,32 @@ class _Builder:
                 "the slave, is smoothed"
             )
             smooth = False
-        self.model.contacts.append(
-            ContactPair(
-                slave,
-                master,
-                cast("Literal['mortar', 'node_to_segment']", pair.method),
-                interaction.friction,
-                self._law(interaction),
-                pair.clearance,
-                cast("Literal['keep', 'adjust', 'ramp']", pair.start),
-                pair.stabilize > 0,
-                stabilize_from=max(pair.stabilize, 1),
-                name=name,
-                where=pair.row.where,
-                adjust=pair.adjust,
-                adjust_nodes=self._adjusted(pair),
-                smooth=smooth,
-                shear_limit=interaction.shear_limit if interaction.rubs else None,
-                separates=interaction.separates,
-                steps=pair.acts(len(self.deck.steps)),
-                friction_steps=interaction.friction_steps,
-                friction_ramps=interaction.friction_ramps or not interaction.friction_steps,
+        count = len(self.deck.steps)
+        for held, steps in interaction.spans(count, pair.acts(count)):
+            later = bool(steps and self.model.contacts and self.model.contacts[-1].name == name)
+            self.model.contacts.append(
+                ContactPair(
+                    slave,
+                    master,
+                    cast("Literal['mortar', 'node_to_segment']", pair.method),
+                    held.friction,
+                    self._law(held),
+                    pair.clearance,
+                    cast("Literal['keep', 'adjust', 'ramp']", pair.start),
+                    pair.stabilize > 0,
+                    stabilize_from=max(pair.stabilize, 1),
+                    name=f"{name} from step {steps[0]}" if later and steps else name,
+                    where=pair.row.where,
+                    adjust=pair.adjust,
+                    adjust_nodes=self._adjusted(pair),
+                    smooth=smooth,
+                    shear_limit=held.shear_limit if held.rubs else None,
+                    separates=held.separates,
+                    steps=steps,
+                    friction_steps=held.friction_steps,
+                    friction_ramps=held.friction_ramps or not held.friction_steps,
+                )
             )
-        )
 
     def _adjusted(self, pair: PairDraft) -> str | Ints | None:
         """Nodes of ``ADJUST=set``."""

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -191,9 +192,25 @@ def _open(deck: Deck, card: Card) -> InteractionDraft | None:
     return deck.interaction
 
 
+def _changed(deck: Deck, card: Card) -> InteractionDraft | None:
+    """The interaction with another law from the open step on."""
+    old, deck.changed = deck.changed, None
+    if old is None:
+        text = f"{card.spelled} inside a step"
+        hint = "put *CHANGE SURFACE BEHAVIOR, INTERACTION= before it to change an interaction"
+        deck.error(card, card.where, text, hint=hint)
+        return None
+    if old.friction_steps or old.law == "TIED":
+        deck.error(card, card.where, "an interaction is changed in its friction or its law alone")
+        return None
+    new = replace(old, pressure=[], overclosure=[], friction_steps={}, later={}, damping=None)
+    old.later[len(deck.steps)] = new
+    return new
+
+
 def surface_behavior(deck: Deck, card: Card) -> None:
     """``*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=``: pressure against overclosure."""
-    into = _open(deck, card)
+    into = _open(deck, card) if deck.step is None else _changed(deck, card)
     law = deck.choice(card, "PRESSURE-OVERCLOSURE", LAWS, "HARD")
     rows = list(card.rows())
     if into is None:
@@ -252,19 +269,30 @@ def contact_damping(deck: Deck, card: Card) -> None:
         into.damping = card
 
 
-def change_friction(deck: Deck, card: Card) -> None:
-    """``*CHANGE FRICTION, INTERACTION=[, RESET]``: ``*FRICTION`` below it holds from this step."""
+def change_surface_behavior(deck: Deck, card: Card) -> None:
+    """``*CHANGE SURFACE BEHAVIOR, INTERACTION=``: the law below it holds from this step."""
+    deck.changed = _to_change(deck, card)
+
+
+def _to_change(deck: Deck, card: Card) -> InteractionDraft | None:
+    """The interaction that a card of a step names."""
     deck.no_rows(card)
     name = deck.required(card, "INTERACTION")
     found = deck.interactions.get(key(name))
-    deck.changed = None
     if deck.step is None:
         deck.error(card, card.where, "the card belongs in a step")
-    elif found is None and name:
+        return None
+    if found is None and name:
         names = [i.name for i in deck.interactions.values()]
         text = f"no *SURFACE INTERACTION named {numerals.shown(name)}"
         deck.error(card, card.at("INTERACTION"), text, hint=nearest(name, names))
-    elif found is not None:
+    return found
+
+
+def change_friction(deck: Deck, card: Card) -> None:
+    """``*CHANGE FRICTION, INTERACTION=[, RESET]``: ``*FRICTION`` below it holds from this step."""
+    found, deck.changed = _to_change(deck, card), None
+    if found is not None:
         # Abaqus changes it over the step, as it lets loads grow; CalculiX at once.
         found.friction_ramps = card.has("RAMP") or deck.dialect == "abaqus"
         if card.has("RESET"):

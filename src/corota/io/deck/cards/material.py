@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from corota.io.deck import numerals
 from corota.io.deck.cards.distribution import plane_angle
+from corota.io.deck.cards.step import turns_nlgeom_on
 from corota.io.deck.drafts import Draft, MaterialDraft, NonstructuralDraft, SectionDraft
 from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
@@ -89,6 +90,8 @@ def constants(deck: Deck, card: Card, law: str) -> None:
         )
         return
     found.law, found.law_where, found.law_card = law, rows[0].where, card
+    if law == "DEFORMATIONPLASTICITY":
+        turns_nlgeom_on(deck, card.spelled)
     _constants(deck, card, rows, found, entry)
 
 

@@ -26,6 +26,12 @@ _KINDS = {
 }
 
 
+def turns_nlgeom_on(deck: Deck, card: str) -> None:
+    """A card that makes the steps of CalculiX geometrically nonlinear."""
+    if deck.dialect == "calculix" and card not in deck.nonlinear:
+        deck.nonlinear.append(card)
+
+
 def step(deck: Deck, card: Card) -> None:
     """``*STEP[, NLGEOM][, INC=][, AMPLITUDE=RAMP|STEP]``."""
     if deck.step is not None:
@@ -33,9 +39,11 @@ def step(deck: Deck, card: Card) -> None:
             card, card.where, f"the step of {deck.step.card.where} has no *END STEP before this"
         )
     before = bool(deck.steps and deck.steps[-1].nlgeom)
-    nlgeom = before or deck.nonlinear
+    nlgeom = before or bool(deck.nonlinear)
     if deck.nonlinear and not card.has("NLGEOM"):
-        deck.note("*MPC turns NLGEOM on in steps that do not say NLGEOM=NO, as in CalculiX")
+        names = " and ".join(deck.nonlinear)
+        turn = "turns" if len(deck.nonlinear) == 1 else "turn"
+        deck.note(f"{names} {turn} NLGEOM on in steps that do not say NLGEOM=NO, as in CalculiX")
     if card.has("NLGEOM"):
         nlgeom = deck.choice(card, "NLGEOM", ("YES", "NO", ""), "YES") != "NO" or before
         if before and nlgeom and key(card.value("NLGEOM")) == "NO":

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from corota.io.deck.cards.step import turns_nlgeom_on
 from corota.io.deck.drafts import Draft, TieDraft
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
@@ -225,7 +226,7 @@ def mpc(deck: Deck, card: Card) -> None:
     ends come last. ``PLANE`` holds by itself. Rows that begin with a node continue the one before.
     """
     line: TieDraft | None = None
-    deck.nonlinear |= deck.dialect == "calculix"
+    turns_nlgeom_on(deck, "*MPC")
     for row in card.rows():
         type_ = key(row.get(0))
         if type_ == "STRAIGHT":
