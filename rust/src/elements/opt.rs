@@ -3,7 +3,9 @@
 //!
 //! The strain is given directly: a basic part that passes the traction patch test and a
 //! higher-order part driven by the hierarchical rotations. There is no displacement field; the
-//! skew gradient is that of the constant-strain triangle.
+//! skew gradient is that of the constant-strain triangle. Where the thickness varies, the basic part
+//! is the mean gradient over the volume, and the higher-order part has no mean: a constant stress then
+//! has the forces of the basic part alone, as under uniform thickness.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::element::{Element, Full, Point, Sample};
@@ -62,6 +64,9 @@ impl Element<3, 3, 0> for Opt {
     fn parameter_of(beta0: f64) -> Option<f64> {
         (beta0 > 0.0).then(|| 1.5 * beta0.sqrt())
     }
+    fn edge(share: f64, thickness: f64) -> f64 {
+        share * thickness
+    }
 
     #[inline(always)]
     fn prepare<T: Real>(x: &Nodal<T, 3, 2>, parameter: f64, sides: &[T; 3]) -> Prepared<T> {
@@ -78,12 +83,28 @@ impl Element<3, 3, 0> for Opt {
             basic[i][0] = [y_jk, x_kj, T::zero(), T::zero()];
             basic[i][1] = [T::zero(), T::zero(), y_jk, x_kj];
             mean[i] = [x_kj.scale(-0.5), y_jk.scale(0.5)];
-            // A side gives its ends opposite moments of the normal traction.
-            let (before, after) = (sides[k] * r.scale(1.0 / 6.0), sides[i] * r.scale(1.0 / 6.0));
-            let ex = before * dy(i, k) * dy(i, k) - after * dy(j, i) * dy(j, i);
-            let ey = before * dx(k, i) * dx(k, i) - after * dx(i, j) * dx(i, j);
-            let half = before * dx(k, i) * dy(i, k) - after * dx(i, j) * dy(j, i);
-            basic[i][2] = [ex, half, half, ey];
+        }
+        // Thickness of the nodes over the mean one; 1 where a neighbor reduces a side.
+        let all = sides[0] + sides[1] + sides[2];
+        let reduced = all.lt(T::real((3.0 - 1e-9) * ALPHA_B));
+        let thick: [T; 3] = std::array::from_fn(|i| {
+            let excess = sides[i] + sides[(i + 2) % 3] - sides[(i + 1) % 3];
+            T::select(reduced, T::one(), excess.scale(1.0 / ALPHA_B))
+        });
+        // A side (a, b) bulges by 4 L_a L_b along its normal: opposite moments at its ends. The mean of
+        // its gradient over the volume is that of the normal traction where the thickness is uniform.
+        for a in 0..3 {
+            let b = (a + 1) % 3;
+            let share = T::select(reduced, sides[a], T::real(ALPHA_B)).scale(1.0 / 24.0);
+            let (n_x, n_y) = (dy(b, a) * share, dx(a, b) * share);
+            let (to_a, to_b) = (thick[b] + T::real(3.0), thick[a] + T::real(3.0));
+            let g_x = to_a.fma(basic[a][0][0], to_b * basic[b][0][0]);
+            let g_y = to_a.fma(basic[a][0][1], to_b * basic[b][0][1]);
+            let half = n_x.fma(g_y, n_y * g_x).scale(0.5);
+            for (r, v) in [n_x * g_x, half, half, n_y * g_y].into_iter().enumerate() {
+                basic[b][2][r] += v;
+                basic[a][2][r] -= v;
+            }
         }
         // Natural strains along the edges (21, 32, 13): squared lengths and directions.
         let mut squared = [T::zero(); 3];
@@ -110,6 +131,18 @@ impl Element<3, 3, 0> for Opt {
                     for s in 0..3 {
                         corner[c][n][s] = to_xy[e][s].fma(scale.scale(beta), corner[c][n][s]);
                     }
+                }
+            }
+        }
+        for n in 0..3 {
+            for s in 0..3 {
+                let mut excess = T::zero();
+                for c in 0..3 {
+                    let share = (thick[c] + T::real(3.0)).scale(1.0 / 12.0);
+                    excess = corner[c][n][s].fma(share, excess);
+                }
+                for c in 0..3 {
+                    corner[c][n][s] -= excess;
                 }
             }
         }
