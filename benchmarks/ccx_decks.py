@@ -194,7 +194,8 @@ def main() -> None:
         *(row(case) for case in [*CASES, *others()]),
         "",
     ]
-    PAGE.write_text("\n".join(lines), encoding="utf-8")
+    by_hand = "".join(PAGE.read_text(encoding="utf-8").partition("\n## ")[1:])
+    PAGE.write_text("\n".join(lines) + by_hand, encoding="utf-8")
 
 
 if __name__ == "__main__":
