@@ -7,12 +7,14 @@ at the middle of one of them.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
 import corota as ct
+from benchmarks.contact_problems import problem
 from benchmarks.contact_torture import run
 from corota import _core
 from corota.analysis.equations import System
@@ -127,32 +129,59 @@ def test_the_same_in_another_unit() -> None:
     np.testing.assert_allclose(1e-3 * runs[1].frames[-1].U, runs[0].frames[-1].U, atol=1e-9)
 
 
+def wedge_force(method: str, fillet: float) -> float:
+    """Of a rigid wedge pressed in between two nodes."""
+    mesh = ct.mesh.rectangle(2.0, 1.0, nx=5, ny=3)
+    tool = ct.mesh.add_node(mesh, 1.0, 2.0, "tool")
+    model = ct.Model(mesh)
+    model.section("all", element="Q4", material=ELASTIC, local_strain="logarithmic")
+    model.fix("bottom")
+    model.fix("tool", x=0.0, y=-DEEP - (math.sqrt(2.0) - 1.0) * fillet, rotation=True)
+    points = [(2.0, 2.0), (1.03, 1.0), (0.0, 2.0)]
+    wedge = ct.RigidCurve.polyline(points, fillet=fillet, reference=tool)
+    model.contact("top", wedge, method=method)
+    last = ct.solve(model, ct.Static(), threads=1).frames[-1]
+    assert abs(last.RF.sum(axis=0)[:2]).max() < 1e-10 * abs(last.RF[tool, 1])
+    return float(last.RF[tool, 1])
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_a_rigid_corner_presses_as_one_with_a_tiny_fillet(method: str) -> None:
     """Such a fillet meets edges in node-to-segment contact: another constraint."""
+    # The foremost point of a fillet of radius r is about r (sqrt 2 - 1) behind the corner.
+    assert wedge_force(method, 0.0) == pytest.approx(wedge_force("node_to_segment", 1e-6), rel=1e-4)
 
-    def pressed(method: str, fillet: float) -> float:
-        mesh = ct.mesh.rectangle(2.0, 1.0, nx=5, ny=3)
-        tool = ct.mesh.add_node(mesh, 1.0, 2.0, "tool")
-        model = ct.Model(mesh)
-        model.section("all", element="Q4", material=ELASTIC, local_strain="logarithmic")
-        model.fix("bottom")
-        model.fix("tool", x=0.0, y=-DEEP, rotation=True)
-        wedge = ct.RigidCurve.polyline(
-            [(2.0, 2.0), (1.03, 1.0), (0.0, 2.0)], fillet=fillet, reference=tool
-        )
-        model.contact("top", wedge, method=method)
-        last = ct.solve(model, ct.Static(), threads=1).frames[-1]
-        assert abs(last.RF.sum(axis=0)[:2]).max() < 1e-10 * abs(last.RF[tool, 1])
-        return float(last.RF[tool, 1])
 
-    # The foremost point of a fillet of radius r is r (sqrt 2 - 1) behind the corner.
-    assert pressed(method, 0.0) == pytest.approx(pressed("node_to_segment", 1e-6), rel=1e-4)
+def rounded(wedge: NDArray[np.float64], fillet: float) -> NDArray[np.float64]:
+    """Segments of a tool with a fillet, and the body on the left as in the core."""
+    rows = ct.RigidCurve.polyline(wedge[::-1], fillet=fillet).segments[::-1]
+    return np.column_stack([rows[:, 2:4], rows[:, :2], rows[:, 4:6], -rows[:, 6]])
+
+
+@pytest.mark.parametrize("fillet", [1e-6, 0.04, 0.3])
+def test_a_small_fillet_is_kept_out_as_in_node_to_segment_contact(fillet: float) -> None:
+    forces = [wedge_force(method, fillet) for method in METHODS]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-3)
+
+
+@pytest.mark.parametrize("number", [1273, pytest.param(58, marks=pytest.mark.slow)])
+def test_a_snap_fit_passes_a_small_fillet_with_the_force_of_a_finer_mesh(number: int) -> None:
+    """Peaks of node-to-segment contact with slave edges a quarter (58: half) as long.
+
+    One stopped where a node hung at the wall beside the fillet, which lay between two nodes.
+    """
+    given = problem(number, size=0.5)
+    results = ct.solve(given.model, given.steps, threads=1)
+    assert results.times[-1] == sum(step.period for step in given.steps)
+    peaks = [np.abs(results.history(f"hook: force {axis}")).max() for axis in "xy"]
+    exact = {1273: (5.151e-8, 5.657e-8), 58: (1.0999e10, 1.7202e10)}[number]
+    assert peaks == pytest.approx(exact, rel=0.1)
+    assert peaks[1] == pytest.approx(exact[1], rel=0.03)
 
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("slave", ["linear", "quadratic", "drilling"])
-@pytest.mark.parametrize("kind", ["edges", "turning", "slave"])
+@pytest.mark.parametrize("kind", ["edges", "turning", "fillet", "slave"])
 def test_gap_and_slip_of_a_corner_have_exact_derivatives(
     kind: str, slave: str, method: str
 ) -> None:
@@ -164,16 +193,18 @@ def test_gap_and_slip_of_a_corner_have_exact_derivatives(
     thick = np.full(len(s[1]), 2.0)
     X = np.vstack([s[0], m[0]])
     more: dict[str, Any] = {"method": method, "corners": True, **LENGTHS}
-    if kind == "turning":
+    if kind in ("turning", "fillet"):
         rows = np.column_stack([wedge[:-1], wedge[1:], np.zeros((2, 3))])
+        if kind == "fillet":
+            rows = rounded(wedge, 0.1)
         contact = _core.Contact.rigid(X, s[1], s[2], thick, rows, len(s[0]), (0.0, 0.0), **more)
     elif kind == "edges":
         contact = _core.Contact.edges(X, s[1], s[2], thick, m[1], m[2], **more)
     else:
         contact = _core.Contact.edges(X, m[1], m[2], thick[:2], s[1], s[2], **more)
     # The master of a body has two ends besides.
-    sharp = int(kind != "slave" or method == "mortar")
-    ends = 0 if kind == "turning" else 2
+    sharp = int(method == "mortar" or kind in ("edges", "turning"))
+    ends = 2 if kind in ("edges", "slave") else 0
     assert len(contact.corners) == ends + sharp
     x, old = moved(X, rng), moved(X, rng)
     check_derivatives(contact, x, old, rng)

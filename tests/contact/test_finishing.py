@@ -135,9 +135,9 @@ def test_a_clip_finishes_where_no_relaxed_position_balances():
 SLOW = [pytest.param(number, marks=pytest.mark.slow) for number in (1767, 1335)]
 
 
-@pytest.mark.parametrize("number", [1183, *SLOW])
+@pytest.mark.parametrize("number", [1192, *SLOW])
 def test_a_damped_motion_starts_newtons_method_where_relaxation_finds_nothing(number):
-    """A clip whose gaps jump, without friction; blocks on wavy floors, with friction.
+    """A clip past a sharp corner; blocks on wavy floors; all with friction.
 
     The corner of the last block folds so far that an element would invert in the motion.
     """

@@ -10,17 +10,22 @@
 //! Where the master is the surface of a body and ends, its last point is such a corner, too: the body
 //! is taken to turn there by a right angle. So a block tips on a slave about its edge, though its sides
 //! belong to no surface, and a slave that lies over the end of its master is supported there.
+//!
+//! A fillet of a rigid master that is not larger than some slave edges sinks in like a sharp corner where
+//! gaps are means. It is the corner at its center, with its radius taken off the gap.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::boundary::followers;
-use super::curve::{Vec2, add, dot, unit};
+use super::curve::{Vec2, add, dot, sub, unit};
 use super::discretization::node_to_segment::{Bounds, choose, met, open};
 use super::master::{Hit, Master, Surface};
 use super::search::{self, Candidate, Item, Search, each};
 use super::sides::Sides;
+use super::slip::{Along, Point, direction, firsts};
 use super::terms::{Function, Share, Terms, WIDTH, join, lifted};
 use super::travel::{Start, Station};
-use crate::base::Smooth;
+use crate::base::{Hyper, Smooth};
+use std::ops::Range;
 
 /// Least turn of the boundary at a corner [rad]: 50 degrees, since the constraints at both sides of
 /// a blunter one keep it out.
@@ -38,17 +43,22 @@ const KEPT: f64 = 0.175;
 /// Part of the last edge of a slave, from its end on, where the end of a master is no constraint of
 /// its own: the slave's end is there, and both would be one constraint twice.
 const SAME_END: f64 = 0.1;
+/// Turn of a rigid round over the longest slave edge [rad] from which it is a fillet between two nodes.
+pub const STEEP: f64 = 0.5;
+/// Most turn of a fillet [rad]: somewhat less than half a turn.
+const MOST_TURN: f64 = 3.1;
 /// Turn of a surface from which it is round and not flat.
 const ROUND: f64 = 1e-3;
 /// Most variables of an edge and a corner.
 const OWN: usize = 9;
 
 /// A corner: the member of its side that ends there, and the one that begins; at an end of the side
-/// one of them.
+/// one of them. That of a fillet has the fillet's first and last piece, and its radius.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     before: Option<usize>,
     behind: Option<usize>,
+    radius: f64,
 }
 
 impl Corner {
@@ -62,6 +72,14 @@ impl Corner {
     fn place(&self) -> (usize, f64) {
         let (member, which) = self.end();
         (member, 2.0 * which as f64 - 1.0)
+    }
+
+    /// Pieces of a fillet.
+    fn pieces(&self) -> Range<usize> {
+        match (self.before, self.behind) {
+            (Some(first), Some(last)) if self.radius > 0.0 => first..last + 1,
+            _ => 0..0,
+        }
     }
 
     fn members(&self) -> impl Iterator<Item = usize> {
@@ -113,7 +131,11 @@ impl Corners {
         let (own, faces) =
             if of_slave { (edges, sides.master.clone()) } else { (sides.master.clone(), edges) };
         let deformable = matches!(own, Surface::Edges(_));
-        let list = sharp(&own, x, least, !of_slave && deformable && !sides.itself);
+        let mut list = sharp(&own, x, least, !of_slave && deformable && !sides.itself);
+        if !of_slave && !nodal {
+            let longest = slave.edges.iter().map(|e| e.length).fold(0.0, f64::max);
+            list.extend(fillets(&own, x, longest));
+        }
         let open = open_ends(&faces, x);
         let part = if sides.itself { 1.0 } else { 2.0 };
         let depth = if list.is_empty() {
@@ -283,7 +305,8 @@ impl Corners {
             let edge = self.faces.place(i, x);
             let hit = edge.closest(p);
             let least = if before == Some(i) { kept } else { facing };
-            let meets = dot(edge.normal(&hit), normal) <= -least && -hit.gap <= self.deepest(c, i);
+            let deep = corner.radius - hit.gap;
+            let meets = dot(edge.normal(&hit), normal) <= -least && deep <= self.deepest(c, i);
             meets.then_some((pair, edge))
         };
         let shapes: Vec<(usize, Master<f64>)> =
@@ -323,19 +346,30 @@ impl Corners {
         let v = lifted::<OWN>(&variables, x);
         let [own, other] = [self.of_corner(c).len(), self.faces.variables(i).len()];
         let [at, from_other] = if self.of_slave { [0, own] } else { [other, 0] };
+        let round = corner.radius > 0.0;
         let p = match &self.own {
             Surface::Edges(_) => [v[at], v[at + 1]],
             rigid => {
                 let (member, which) = corner.end();
-                rigid.shape(member, &v[at..at + own]).end(which)
+                let shape = rigid.shape(member, &v[at..at + own]);
+                if round { shape.center() } else { shape.end(which) }
             }
         };
         let face = self.faces.shape(i, &v[from_other..from_other + other]);
-        let (hit, along) = met(p, &face);
+        let (mut hit, mut along) = met(p, &face);
+        let n = face.normal(&hit);
+        let place = self.place(corner, n.map(|n| n.v), x);
+        if round {
+            let arc = self.own.shape(place.0, &v[at..at + own]);
+            let own = arc.closest(sub(p, n.map(|n| n.scale(corner.radius))));
+            let apart = firsts(&sub(hit.point, own.point));
+            let points = (Point::of(&arc, &own), Point::of(&face, &hit));
+            along = direction(&points.0, &points.1, Along::Master, apart);
+            hit.gap = hit.gap - Hyper::real(corner.radius);
+        }
         let (constraint, r) = (self.constraint(c), hit.r.v);
         let slip = start.map_or_else(Function::none, |start| {
-            let ends =
-                if self.of_slave { [corner.place(), (i, r)] } else { [(i, r), corner.place()] };
+            let ends = if self.of_slave { [place, (i, r)] } else { [(i, r), place] };
             let normal = face.normal_at(r);
             let normal = if self.of_slave { normal } else { normal.map(|c| -c) };
             let path = start.slip(ends[0], ends[1], normal, Some(constraint));
@@ -352,6 +386,17 @@ impl Corners {
         Terms { pair: from + pair, variables, shares: vec![share] }
     }
 
+    /// Member and parameter at which a corner meets a face of a normal.
+    fn place(&self, corner: Corner, normal: Vec2<f64>, x: &[[f64; 3]]) -> (usize, f64) {
+        let deepest = |j: usize| {
+            let arc = self.own.place(j, x);
+            arc.closest(sub(arc.center(), normal)).r
+        };
+        let pieces = corner.pieces().map(|j| (j, deepest(j)));
+        let found = pieces.min_by(|p, q| p.1.abs().total_cmp(&q.1.abs()));
+        found.unwrap_or_else(|| corner.place())
+    }
+
     /// Where corners meet the other side at `x`, with candidates that belong to it.
     pub fn stations(
         &mut self,
@@ -365,11 +410,12 @@ impl Corners {
         let station = |(c, &corner): (usize, &Corner)| {
             let own = self.constraint(c);
             let i = self.search.candidates[self.meets(sides, c, x, self.held[1][c])?].1;
-            let hit = self.faces.place(i, x).closest(point(&self.own, corner, x));
-            let corner = corner.place();
+            let face = self.faces.place(i, x);
+            let hit = face.closest(point(&self.own, corner, x));
+            let place = self.place(corner, face.normal(&hit), x);
             let [(edge, place), (master, r)] =
-                if self.of_slave { [corner, (i, hit.r)] } else { [(i, hit.r), corner] };
-            let (gap, closed) = (hit.gap, closed(own));
+                if self.of_slave { [place, (i, hit.r)] } else { [(i, hit.r), place] };
+            let (gap, closed) = (hit.gap - corner.radius, closed(own));
             let (span, opposite) = ([place; 2], [r; 2]);
             Some(Station {
                 point: Some(own),
@@ -454,17 +500,20 @@ fn free(sides: &Sides, corner: Corner, i: usize, nodal: bool) -> bool {
     own.iter().all(apart) && !(nodal && sides.slave.apart(&own, i, &sides.notches))
 }
 
+/// A corner, or the center of a fillet.
 fn point(own: &Surface, corner: Corner, x: &[[f64; 3]]) -> Vec2<f64> {
     let (member, which) = corner.end();
-    own.place(member, x).end(which)
+    let shape = own.place(member, x);
+    if corner.radius > 0.0 { shape.center() } else { shape.end(which) }
 }
 
 /// Outward normals of the member that ends at a corner and of that which begins. Where there is none,
 /// the boundary turns left by a right angle.
 fn normals(master: &Surface, corner: Corner, x: &[[f64; 3]]) -> [Vec2<f64>; 2] {
     let normal = |j: usize, which: usize| normal_at(&master.place(j, x), which);
+    let round = usize::from(corner.radius > 0.0);
     let (before, behind) =
-        (corner.before.map(|j| normal(j, 1)), corner.behind.map(|j| normal(j, 0)));
+        (corner.before.map(|j| normal(j, 1 - round)), corner.behind.map(|j| normal(j, round)));
     match (before, behind) {
         (Some(a), Some(b)) => [a, b],
         (Some([a, b]), None) => [[a, b], [-b, a]],
@@ -485,7 +534,8 @@ pub fn turn([a, b]: [Vec2<f64>; 2]) -> f64 {
 
 fn item(master: &Surface, corner: Corner, x: &[[f64; 3]]) -> Item {
     let (p, [a, b]) = (point(master, corner, x), normals(master, corner, x));
-    ([p[0], p[1], p[0], p[1]], unit(add(a, b)))
+    let r = corner.radius;
+    ([p[0] - r, p[1] - r, p[0] + r, p[1] + r], unit(add(a, b)))
 }
 
 /// Which ends of the members of a surface no member follows.
@@ -519,8 +569,9 @@ fn sharp(master: &Surface, x: &[[f64; 3]], least: f64, ends: bool) -> Vec<Corner
     let next = followers(master, x);
     let mut first = vec![ends; next.len()];
     next.iter().flatten().for_each(|&j| first[j] = false);
-    let met = |(j, &behind): (usize, &Option<usize>)| Corner { before: Some(j), behind };
-    let begin = |(j, _): (usize, &bool)| Corner { before: None, behind: Some(j) };
+    let met =
+        |(j, &behind): (usize, &Option<usize>)| Corner { before: Some(j), behind, radius: 0.0 };
+    let begin = |(j, _): (usize, &bool)| Corner { before: None, behind: Some(j), radius: 0.0 };
     next.iter()
         .enumerate()
         .map(met)
@@ -528,4 +579,40 @@ fn sharp(master: &Surface, x: &[[f64; 3]], least: f64, ends: bool) -> Vec<Corner
         .chain(first.iter().enumerate().filter(|(_, first)| **first).map(begin))
         .filter(turns)
         .collect()
+}
+
+/// The convex fillets of a rigid master that turn sharply between two nodes of a slave with edges up
+/// to `longest`.
+fn fillets(master: &Surface, x: &[[f64; 3]], longest: f64) -> Vec<Corner> {
+    let arc = |j: usize| match master.place(j, x) {
+        Master::Arc(arc) => Some(arc),
+        Master::Curve(_) => None,
+    };
+    let radius = |j: usize| arc(j).map_or(f64::INFINITY, |arc| arc.signed_radius());
+    let same = |i: usize, j: usize| arc(i).zip(arc(j)).is_some_and(|(a, b)| a.same_circle(&b));
+    let mut list: Vec<Corner> = Vec::new();
+    for j in (0..master.len()).filter(|&j| (0.0..=longest / STEEP).contains(&radius(j))) {
+        match list.last_mut() {
+            Some(c) if c.behind == j.checked_sub(1) && same(j - 1, j) => c.behind = Some(j),
+            _ => list.push(Corner { before: Some(j), behind: Some(j), radius: radius(j) }),
+        }
+    }
+    let sweep = |j: usize| arc(j).map_or(0.0, |arc| arc.sweep());
+    // A pin that the slave may meet on both sides is no corner.
+    list.retain(|c| (LEAST_TURN..MOST_TURN).contains(&c.pieces().map(sweep).sum()));
+    list
+}
+
+/// Which members of a master are pieces of a fillet, and which of their ends are at sharp corners or
+/// in a fillet.
+pub fn at_corners(master: &Surface, x: &[[f64; 3]], longest: f64) -> (Vec<bool>, Vec<[bool; 2]>) {
+    let (mut fillet, mut ends) = (vec![false; master.len()], vec![[false; 2]; master.len()]);
+    for corner in sharp(master, x, LEAST_TURN, false) {
+        corner.before.iter().for_each(|&j| ends[j][1] = true);
+        corner.behind.iter().for_each(|&j| ends[j][0] = true);
+    }
+    for j in fillets(master, x, longest).iter().flat_map(Corner::pieces) {
+        (fillet[j], ends[j]) = (true, [true; 2]);
+    }
+    (fillet, ends)
 }

@@ -14,11 +14,13 @@
 //! of a curved master over the chord of a linear edge is for this taken out of the gap. Quadratic edges have (1 -+ 2 xi) / 2, which
 //! give the value of a parabola at its vertex. The sum is one, so that a uniform pressure passes the
 //! patch test. Where the master ends within such an edge, xi runs over the covered part, as if the edge
-//! ended there: else the area of a node would be negative. An end that a support guides is none: there
+//! ended there: else the area of a node would be negative. It ends at sharp corners of the master, too: of
+//! the gap beside a corner, which opens to both sides, the functions would see a negative value at a node
+//! that is apart. Fillets smaller than two edges are such corners, under which weights are those of the shape. An end that a support guides is none: there
 //! functions are those inside the surface, of a rough surface the shape functions.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::super::corners::{open_ends, round};
+use super::super::corners::{STEEP, at_corners, open_ends, round};
 use super::super::curve::{Curve, Edge, GAUSS, dot, lift, middle_of, outward, times, unit};
 use super::super::master::{Master, Surface};
 use super::super::search::each;
@@ -43,10 +45,8 @@ pub const ENTRY: Entry = Entry {
 const FACING: f64 = 0.3;
 /// The same for arcs, which are left behind gradually.
 const FACING_ARC: f64 = 0.05;
-/// Turn of a curved master over the longest slave edge [rad] from which it counts, and that from which
-/// it is a fillet between two nodes.
+/// Turn of a curved master over the longest slave edge [rad] from which it counts.
 const FLAT: f64 = 1e-3;
-const STEEP: f64 = 0.5;
 /// Common length of two overlaps, in the slave parameter, that is no more than rounding.
 const TOUCH: f64 = 1e-9;
 
@@ -145,20 +145,14 @@ pub fn clip_occluded(overlaps: &mut Vec<Overlap>) {
     *overlaps = seen;
 }
 
-/// Part of a slave edge that its masters cover together, by the overlaps that begin and end it.
+/// Part of a slave edge that masters without a corner between them cover, by the overlaps that begin and
+/// end it.
 #[derive(Clone, Copy, Debug)]
 struct Covered {
     ends: [Overlap; 2],
 }
 
 impl Covered {
-    /// The part that some overlaps cover, what lies between them included.
-    fn of(overlaps: &[Overlap]) -> Option<Self> {
-        let first = overlaps.iter().min_by(|a, b| a.values[0].total_cmp(&b.values[0]))?;
-        let last = overlaps.iter().max_by(|a, b| a.values[1].total_cmp(&b.values[1]))?;
-        Some(Self { ends: [*first, *last] })
-    }
-
     /// Whether this is the whole edge.
     fn is_whole(&self) -> bool {
         (0..2).all(|end| self.limit(end).0 == Limit::Fixed(2.0 * end as f64 - 1.0))
@@ -307,6 +301,9 @@ pub struct Mortar {
     free: Vec<f64>,
     /// Curvature of each master in the reference configuration.
     curvature: Vec<f64>,
+    /// Which masters are pieces of a fillet, and which of their ends are corners.
+    fillet: Vec<bool>,
+    corner: Vec<[bool; 2]>,
 }
 
 impl Discretization for Mortar {
@@ -386,7 +383,8 @@ impl Mortar {
         let edges = || sides.slave.edges.iter().enumerate();
         let inner = edges().map(|e| slope(e, false)).collect();
         let free: Vec<f64> = edges().map(|e| slope(e, ends[e.0].contains(&true))).collect();
-        Self { slope: free.clone(), inner, free, curvature }
+        let (fillet, corner) = at_corners(&sides.master, x, longest);
+        Self { slope: free.clone(), inner, free, curvature, fillet, corner }
     }
 
     /// Height of a master over the chord of a slave edge, whose functions take a gap for linear.
@@ -400,9 +398,9 @@ impl Mortar {
         let mut overlaps = overlaps(sides, i, x);
         clip_occluded(&mut overlaps);
         let whole = self.slope[i] <= 1.0;
-        let covered = Covered::of(&overlaps).filter(|c| !whole && !c.is_whole());
         let terms = |o: &Overlap| {
-            let covered = covered.as_ref();
+            let part = if whole { None } else { self.part(sides, &overlaps, o) };
+            let covered = part.as_ref().filter(|c| !c.is_whole());
             let variables = distinct(&variables_of(sides, o, covered));
             match variables.0.len() {
                 0..=8 => self.overlapped::<8>(sides, (o, covered), &variables, x, start),
@@ -411,6 +409,21 @@ impl Mortar {
             }
         };
         overlaps.iter().map(terms).collect()
+    }
+
+    /// Part of an edge between corners of the master that an overlap belongs to; none of a fillet.
+    fn part(&self, sides: &Sides, overlaps: &[Overlap], o: &Overlap) -> Option<Covered> {
+        let master = |o: &Overlap| sides.candidates()[o.pair].1;
+        if self.fillet[master(o)] {
+            return None;
+        }
+        let mut order = overlaps.to_vec();
+        order.sort_by(|a, b| a.values[0].total_cmp(&b.values[0]));
+        // Facing sides run against each other.
+        let joined =
+            |a: &Overlap, b: &Overlap| !self.corner[master(a)][0] && !self.corner[master(b)][1];
+        let own = order.chunk_by(joined).find(|part| part.iter().any(|p| p.pair == o.pair))?;
+        Some(Covered { ends: [*own.first()?, *own.last()?] })
     }
 
     fn overlapped<const D: usize>(
@@ -461,7 +474,7 @@ impl Mortar {
             run,
             reference: &sides.reference[i],
             thickness: sides.slave.thickness[i],
-            slope: self.slope[i],
+            slope: if self.fillet[j] { 1.0 } else { self.slope[i] },
             offset: [sides.offset[constraints[0]], sides.offset[constraints[1]]],
             height: self.height(sides, i, j),
         };

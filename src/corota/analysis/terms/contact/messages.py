@@ -118,9 +118,9 @@ def _corners(contact_term: ContactTerm) -> NDArray[np.bool_]:
     return found
 
 
-#: Note alone: slave edges that a round corner should measure along its radius, and the least turn
-#: of one.
-EDGES, TURN = 2.0, math.radians(20.0)
+#: Notes alone: slave edges that a round corner should measure along its radius, its least turn,
+#: and that from which hard contact has no constraint of it as a corner [rad].
+EDGES, TURN, PIN = 2.0, math.radians(20.0), 3.1
 
 
 def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
@@ -162,7 +162,7 @@ def fillet_note(pair: Pair) -> str:
         return ""
     rows = curve.segments
     # Clockwise arcs have the rigid body inside: the corners that slave edges pass around.
-    corners = rows[rows[:, 6] < -TURN]
+    corners = rows[rows[:, 6] < -(PIN if pair.law is None else TURN)]
     if not len(corners):
         return ""
     radius = float(np.hypot(*(corners[:, :2] - corners[:, 4:6]).T).min())
