@@ -148,3 +148,27 @@ def test_a_peak_that_an_increment_may_pass_is_noted(keep):
     step.fix("top", x=0.0, y=-0.01, amplitude="push")
     notes = ct.solve(model, step, keep=keep, threads=1).notes
     assert sum("resolves the peak" in note for note in notes) == 1
+
+
+@pytest.mark.parametrize("increments", [1, 5])
+def test_friction_energy_counts_only_the_part_of_a_bar_that_slips(increments: int) -> None:
+    """Pulled by F on a rough floor (q per length): F^3 / 6 EA q, and F^3 / 24 EA q on release.
+
+    The part that does not slip has no shear traction at all; it does not leave the floor.
+    """
+    q, stiffness, force = 0.2, 1e3, 1.0
+    model = ct.Model(ct.mesh.line([(0.0, 0.0), (10.0, 0.0)], n=100))
+    model.truss("all", material=ct.Elastic(E=1e6), area=1e-3)
+    floor = ct.RigidCurve.line((-1.0, 0.0), (12.0, 0.0))
+    model.contact("all", floor, friction=0.4, name="floor")
+    model.line_load(y=-q / 0.4)
+    steps = [ct.Static(), ct.Static(increments=increments), ct.Static(increments=increments)]
+    steps[1].force("end", x=force)
+    steps[2].force("end", x=0.0)
+    results = ct.solve(model, steps)
+    pulled = int(np.flatnonzero(results.history("step") == 2)[-1])
+    lost = results.history("friction energy")
+    unit = force**3 / (stiffness * q)
+    assert float(lost[pulled]) == pytest.approx(unit / 6.0, rel=1e-3)
+    assert float(lost[-1] - lost[pulled]) == pytest.approx(unit / 24.0, rel=2e-3)
+    assert abs(results.frames[-1].scalars["ETOTAL"]) < 1e-9

@@ -563,7 +563,7 @@ class ContactTerm(Term):
         states = [np.zeros(pair.n, np.int8) for pair in self.pairs]
         if self.at is not None:
             states = self.at.states
-        for pair, terms, (_, q), begun, state in zip(
+        for pair, terms, (p, q), begun, state in zip(
             self.pairs,
             contact_state.terms,
             self.parts(contact_state.multipliers),
@@ -572,7 +572,7 @@ class ContactTerm(Term):
             strict=True,
         ):
             late = pair.beyond_trapezoid
-            pair.commit(terms, q, begun, state)
+            pair.commit(terms, p, q, begun, state)
             if self.damps:
                 self.late_work += pair.beyond_trapezoid - late
         # The equations of both ends have these forces, and so has the work of the loads.

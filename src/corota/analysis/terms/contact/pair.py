@@ -630,14 +630,19 @@ class Pair:
     # -- increments --------------------------------------------------------------------
 
     def commit(
-        self, terms: Terms, q: Floats, before: tuple[Floats, Floats], states: NDArray[np.int8]
+        self,
+        terms: Terms,
+        p: Floats,
+        q: Floats,
+        before: tuple[Floats, Floats],
+        states: NDArray[np.int8],
     ) -> None:
         """Accept a state.
 
         Parameters
         ----------
-        q : ndarray, shape (n,)
-            Shear tractions.
+        p, q : ndarray, shape (n,)
+            Pressures and shear tractions.
         before : ndarray, ndarray, shape (n,)
             Pressures and shear tractions of the committed state.
         states : ndarray of int, shape (n,)
@@ -652,10 +657,15 @@ class Pair:
             slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
             self.slid += np.where(q != 0.0, slip, 0.0)
             areas = np.where(states != OPEN, was, 0.0), np.where(seen, terms.area, 0.0)
-            self._rub(slip, areas, before, q)
+            self._rub(slip, areas, before, q, (q != 0.0) | (self.states(terms, p, q) != OPEN))
 
     def _rub(
-        self, slip: Floats, areas: tuple[Floats, Floats], before: tuple[Floats, Floats], q: Floats
+        self,
+        slip: Floats,
+        areas: tuple[Floats, Floats],
+        before: tuple[Floats, Floats],
+        q: Floats,
+        closed: NDArray[np.bool_],
     ) -> None:
         """Add the friction work of an increment, with a mean of the tractions at its ends.
 
@@ -677,7 +687,7 @@ class Pair:
         whole = float((was * np.where(limited, bound, np.abs(last))).sum())
         turns = slid * float((now * q).sum()) < 0.0 and abs(slid) > TURNS_BACK * whole
         rates = turns or self.start is not None
-        stays = np.where((q != 0.0) | (total == 0.0), np.minimum(was, now), 0.0)
+        stays = np.where(closed | (total == 0.0), np.minimum(was, now), 0.0)
         begin = q if rates else np.where((q != 0.0) & limited, np.sign(q) * bound, last)
         # Constraints that opened may have slid back without traction.
         end = self.end_share
