@@ -21,7 +21,7 @@ from benchmarks.common import report
 from benchmarks.contact_audit_statics import CHECKS, WITH_FRICTION, Row
 
 
-def judge(name: str) -> tuple[str, list[Row], str, float]:
+def outcome(name: str) -> tuple[str, list[Row], str, float]:
     """Verdict, rows, message of a run that stopped, and processor time of a check."""
     rows: list[Row] = []
     start, message = time.process_time(), ""
@@ -48,7 +48,7 @@ def main() -> int:
     warnings.simplefilter("ignore")
     listed, summary, counts = [], [], Counter[str]()
     for name in arguments.names or CHECKS:
-        verdict, rows, message, seconds = judge(name)
+        verdict, rows, message, seconds = outcome(name)
         counts[verdict] += 1
         friction = "yes" if name in WITH_FRICTION else ""
         worst = max((abs(r[1] - r[2]) / (abs(r[2]) or 1.0) for r in rows), default=float("nan"))
