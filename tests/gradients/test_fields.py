@@ -10,6 +10,7 @@ import pytest
 
 import corota as ct
 from corota import gradients
+from corota.model import elements
 
 
 def plate(element: str = "Q4I", law: object = None, **options: object) -> ct.Model:
@@ -61,6 +62,27 @@ def test_thickness_by_element_node_and_section(element: str, law: object, option
     assert by_cell.shape == (results.mesh.n_cells,)
     for found in (by_cell, by_node, by_section):
         assert found.sum() == pytest.approx(exact, rel=1e-8)
+
+
+@pytest.mark.parametrize("element", ["T3", "T6", "Q4", "Q4S", "Q4D", "Q4I", "Q8", "Q8R", "Q9"])
+def test_thickness_of_single_nodes(element: str) -> None:
+    """Along a random change of the nodes, beside differences: a sum over nodes hides the slopes."""
+    cell = elements.find(element).cell
+    mesh = ct.mesh.rectangle(4.0, 1.0, nx=4, ny=2, cell=cell)
+    rng = np.random.default_rng(1)
+    start, change = 0.7 + 0.1 * rng.random(mesh.n_nodes), rng.standard_normal(mesh.n_nodes)
+
+    def run(step: float) -> ct.Results:
+        model = ct.Model(mesh)
+        law = ct.Elastic(E=1000.0, nu=0.3)
+        model.section("all", element=element, material=law, thickness=start + step * change)
+        model.fix("left")
+        model.force(mesh.node_sets["right"], y=-0.3, x=0.2)
+        return ct.solve(model, ct.Static(increments=2, tolerance=1e-13), threads=1)
+
+    slope = ct.gradient(run(0.0), TIP[0], gradients.Thickness("node")) @ change
+    ends = [run(h).history("U2", at="right")[-1] for h in (1e-5, -1e-5)]
+    assert slope == pytest.approx((ends[0] - ends[1]) / 2e-5, rel=1e-6)
 
 
 def test_constants_orientation_and_loads() -> None:

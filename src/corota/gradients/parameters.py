@@ -325,7 +325,15 @@ class Thickness(Field):
         return out
 
     def require(self, trajectory: Trajectory, adjoint: Adjoint) -> None:
-        """Refuse loads on edges and bodies, which act on the thickness."""
+        """Refuse what acts on the thickness in other ways: loads on edges, slopes of nodes."""
+        for section in (block.section for block in trajectory.system.blocks):
+            by_node = self.by == "node" or section.nodal_thickness is not None
+            if by_node and section.element == "Q4R":
+                # Its stabilization takes the slopes of the thickness, which are not differentiated.
+                raise UnsupportedError(
+                    "the gradient by a thickness of nodes is not exact for Q4R, which depends on "
+                    "the slopes of the thickness: take another element, or gradients.Attribute"
+                )
         model, what = trajectory.model, ""
         sections = (block.section for block in trajectory.system.blocks)
         if all(s.axisymmetric or elements.find(s.element).line for s in sections):
