@@ -92,3 +92,22 @@ def test_patch_on_a_rigid_line(element):
     assert np.abs(stresses(results, np.eye(2)) - [0.0, -P, 0.0]).max() < 1e-10 * P
     pressure = results.nodal("CPRESS")[mesh.nodes_of("bottom")]
     assert pressure == pytest.approx(P, rel=1e-10)
+
+
+@pytest.mark.parametrize("element", ["Q8", "Q8R", "Q9", "T6"])
+@pytest.mark.parametrize("law", [False, True])
+def test_a_uniform_pressure_is_uniform_at_nodes_of_quadratic_edges(element, law):
+    """Areas of slave nodes are the integrals of their weights: corners had half as much again."""
+    cell = {"Q9": "quad9", "T6": "tri6"}.get(element, "quad8")
+    model = ct.Model(ct.mesh.rectangle(2.0, 1.0, 4, 2, cell=cell))
+    model.section("all", element=element, material=ct.Elastic(E=1e5))
+    layer = ct.PressureLaw("linear", 400.0) if law else None
+    floor = ct.RigidCurve.line((-1.0, 0.0), (3.0, 0.0))
+    model.contact("bottom", floor, law=layer, method="node_to_segment", name="floor")
+    model.fix("left", x=0.0, y=None)
+    model.pressure("top", 8.0)
+    results = ct.solve(model, ct.Static(nlgeom=False), threads=1)
+    bottom = model.mesh.node_sets["bottom"]
+    np.testing.assert_allclose(results.nodal("CPRESS")[bottom], 8.0, rtol=1e-9)
+    if law:
+        np.testing.assert_allclose(results.frames[-1].U[bottom, 1], -0.02, rtol=1e-9)

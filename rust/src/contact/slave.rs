@@ -8,6 +8,8 @@ use std::f64::consts::TAU;
 
 /// Largest cosine between the normals of the faces of a notch that may meet: 60 degrees of opening.
 const OPPOSITE: f64 = -0.5;
+/// Integral of weights over that of their sizes below which it is as good as none.
+const VANISHING: f64 = 0.1;
 /// Sine between two normals that is rounding.
 const PARALLEL: f64 = 1e-6;
 
@@ -39,8 +41,8 @@ pub struct Slave {
     pub nodes: Vec<u32>,
     /// Constraints of each edge's nodes.
     pub constraints: Vec<[usize; 3]>,
-    /// Reference area of each constraint over all its edges, by the size of its weights: that of the
-    /// corner of a quadratic edge changes its sign, and around the axis its integral vanishes.
+    /// Reference area of each constraint over all its edges, the integral of its weights; that of
+    /// their sizes for the corner of a quadratic edge at the axis, whose integral vanishes.
     pub area: Vec<f64>,
 }
 
@@ -52,7 +54,7 @@ impl Slave {
         thickness: Vec<Depth>,
         middles: bool,
     ) -> Self {
-        let (mut nodes, mut area) = (Vec::new(), Vec::new());
+        let (mut nodes, mut area, mut size) = (Vec::new(), Vec::new(), Vec::new());
         let mut number = HashMap::new();
         let mut constraints = Vec::with_capacity(edges.len());
         for (edge, thickness) in edges.iter().zip(&thickness) {
@@ -63,6 +65,7 @@ impl Slave {
                 mine[a] = *number.entry(edge.nodes[a]).or_insert_with(|| {
                     nodes.push(edge.nodes[a]);
                     area.push(0.0);
+                    size.push(0.0);
                     nodes.len() - 1
                 });
             }
@@ -71,10 +74,16 @@ impl Slave {
                 let da = thickness.area(w * dot(t, t).sqrt(), || curve.at(r)[0]);
                 let psi = weights(n, r);
                 for a in 0..n {
-                    area[mine[a]] += psi[a].abs() * da;
+                    area[mine[a]] += psi[a] * da;
+                    size[mine[a]] += psi[a].abs() * da;
                 }
             }
             constraints.push(mine);
+        }
+        for (area, size) in area.iter_mut().zip(size) {
+            if *area < VANISHING * size {
+                *area = size;
+            }
         }
         Self { edges, thickness, nodes, constraints, area }
     }
