@@ -201,7 +201,8 @@ where
                     for i in 0..M {
                         for j in 0..M {
                             // Twice the derivative of the mean, as below.
-                            end.stiffness[a][b][i][j] += 2.0 * weight * s * at.stiffness[a][b][i][j];
+                            end.stiffness[a][b][i][j] +=
+                                2.0 * weight * s * at.stiffness[a][b][i][j];
                         }
                     }
                 }
