@@ -13,7 +13,6 @@ from corota.model import elements
 
 #: Elements with an area whose constant stress is exact under any thickness of nodes.
 EXACT = [n for n in elements.names() if elements.find(n).cell[:4] in ("tri3", "tri6", "quad")]
-EXACT.remove("OPT")
 
 
 def strip(element: str, rows: int, skew: float, strain: str = "linear") -> ct.Model:
@@ -41,14 +40,13 @@ def strip(element: str, rows: int, skew: float, strain: str = "linear") -> ct.Mo
 @pytest.mark.parametrize("rows", [1, 2, 4])
 @pytest.mark.parametrize("element", EXACT)
 def test_constant_stress_is_exact(element: str, rows: int) -> None:
-    """The stress 1 along x is in equilibrium: the thickness varies across it (Q4R: 4.2 %)."""
+    """The stress 1 along x, with a thickness that varies across it (Q4R: 4.2, OPT: 6.5 %)."""
     results = ct.solve(strip(element, rows, 0.0), ct.Static(nlgeom=False), threads=1)
     stress = results.frames[-1].fields[0].values["S"][..., [0, 1, 3]]
     assert np.allclose(stress, [1.0, 0.0, 0.0], atol=1e-9)
-    assert not any("thickness that varies" in note for note in results.notes)
 
 
-@pytest.mark.parametrize("element", ["Q4", "Q4R"])
+@pytest.mark.parametrize("element", ["Q4", "Q4R", "OPT"])
 def test_constant_stress_is_exact_in_distorted_cells(element: str) -> None:
     frame = ct.solve(strip(element, 4, 0.15), ct.Static(nlgeom=False), threads=1).frames[-1]
     stress = frame.fields[0].values["S"][..., [0, 1, 3]]
@@ -68,8 +66,3 @@ def test_the_tangent_of_reduced_integration_is_exact_there() -> None:
         assert frame.scalars["iterations"] <= 7
         pulls.append(frame.RF[model.mesh.nodes_of("right"), 0].sum())
     assert pulls[0] == pytest.approx(pulls[1], rel=0.02)
-
-
-def test_opt_is_named() -> None:
-    results = ct.solve(strip("OPT", 1, 0.0), ct.Static(nlgeom=False), threads=1)
-    assert any("OPT with a thickness that varies" in note for note in results.notes)

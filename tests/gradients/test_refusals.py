@@ -65,16 +65,19 @@ def test_what_bodies_do_not_have() -> None:
         ct.gradient(ct.solve(model, threads=1), gradients.Area(), MODULUS)
 
 
+@pytest.mark.parametrize("element", ["Q4R", "OPT"])
 @pytest.mark.parametrize("by", ["node", "section"])
-def test_slopes_of_a_thickness(by: str) -> None:
-    """Stabilization of Q4R takes the slopes of the thickness: .059 for .086 without them."""
-    model = beam()
+def test_slopes_of_a_thickness(element: str, by: str) -> None:
+    """The slopes of the thickness act on these elements: .059 for .086 without them (Q4R)."""
+    cell = "tri3" if element == "OPT" else "quad4"
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, nx=4, ny=2, cell=cell))
     across = 1.0 + (by == "section") * 0.1 * model.mesh.points[:, 1]
     law = ct.Elastic(E=1000.0, nu=0.3)
-    model.sections.clear()
-    model.section("all", element="Q4R", material=law, thickness=across)
+    model.section("all", element=element, material=law, thickness=across)
+    model.fix("left")
     model.force(model.mesh.node_sets["right"], y=-0.1)
-    refused(model, TIP, gradients.Thickness(by), "Q4R")
+    model.steps = [ct.Static()]
+    refused(model, TIP, gradients.Thickness(by), element)
 
 
 def test_velocity_of_a_static_step() -> None:

@@ -39,7 +39,6 @@ from corota.errors import (
     memory_errors,
 )
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
-from corota.model.sections import thickness_notes
 from corota.model.steps import in_force
 from corota.results.results import Frame, Results
 
@@ -427,7 +426,6 @@ class Analysis:
         state.energies.begin(step, state.at.internal)
         if number == 1:
             state.notes += [note for term in system.terms for note in term.notes]
-            state.notes += thickness_notes(self.model.sections)
             if not step.starts_in_motion:
                 self._save(number, state, 0, 0.0, {})
 

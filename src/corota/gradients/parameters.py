@@ -283,6 +283,10 @@ class Positions(Field):
             )
 
 
+#: Elements whose strain depends on the slopes of a thickness by node.
+_BY_SLOPE = ("Q4R", "OPT")
+
+
 @dataclass
 class Thickness(Field):
     """Thickness of the elements of all sections, or of some cells.
@@ -328,11 +332,10 @@ class Thickness(Field):
         """Refuse what acts on the thickness in other ways: loads on edges, slopes of nodes."""
         for section in (block.section for block in trajectory.system.blocks):
             by_node = self.by == "node" or section.nodal_thickness is not None
-            if by_node and section.element == "Q4R":
-                # Its stabilization takes the slopes of the thickness, which are not differentiated.
+            if by_node and section.element in _BY_SLOPE:
                 raise UnsupportedError(
-                    "the gradient by a thickness of nodes is not exact for Q4R, which depends on "
-                    "the slopes of the thickness: take another element, or gradients.Attribute"
+                    f"{section.element} depends on the slopes of a thickness by node, which have "
+                    "no gradient: take Q4I, Q8 or T6, or gradients.Attribute"
                 )
         model, what = trajectory.model, ""
         sections = (block.section for block in trajectory.system.blocks)

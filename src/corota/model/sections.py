@@ -277,14 +277,3 @@ def thickness_at(mesh: Mesh, sections: Iterable[Section], cells: Ints, nodes: In
         mine = np.isin(cells, cells_of(mesh, section.cells))
         found[mine] = section.thickness_at(nodes[mine], mesh.points)
     return found
-
-
-def thickness_notes(sections: Iterable[Section]) -> list[str]:
-    """Remark on elements that a thickness by node makes less exact."""
-    varies = (s.nodal_thickness for s in sections if s.element == "OPT")
-    if not any(t is not None and np.ptp(t) > 0.0 for t in varies):
-        return []
-    return [
-        "OPT with a thickness that varies: a constant stress is off by up to 7 % with one row of "
-        "elements and 1 % with eight; all other elements are exact (Q4D has rotations, too)"
-    ]
