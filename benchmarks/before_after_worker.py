@@ -230,6 +230,10 @@ CASES: dict[str, Callable[[], tuple[ct.Model, Any]]] = {
     "P3 contact 740": lambda: contact(8, 0.0),
     "P3 contact": lambda: contact(24, 0.0),
     "P3 friction": lambda: contact(24, 0.3),
+    "P3 contact 4k": lambda: contact(20, 0.0),
+    "P3 friction 4k": lambda: contact(20, 0.3),
+    "P3 contact 32k": lambda: contact(56, 0.0),
+    "P3 friction 32k": lambda: contact(56, 0.3),
     "P4 hht 41k": lambda: swinging(450, 45, "Q4I"),
     "P4 hht 410": lambda: swinging(40, 4, "Q4I"),
     "P4 energy-momentum 410": lambda: swinging(40, 4, "Q4D", scheme="energy_momentum"),
@@ -244,7 +248,7 @@ def case(name: str) -> list[tuple[str, float]]:
 
 
 MODELS: dict[str, Callable[[], tuple[ct.Model, Any]]] = {
-    **{name: CASES[name] for name in CASES if not name.endswith(("41k", "250k"))},
+    **{name: CASES[name] for name in CASES if not name.endswith("k")},
     **{
         f"Python material, {element}, {scheme}": lambda element=element, scheme=scheme: own(
             element,
