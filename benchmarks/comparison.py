@@ -108,9 +108,8 @@ def plain_ticks(row: Any) -> None:
     for ax in row:
         ax.set_xlim(low, high)
         ax.xaxis.set_major_locator(LogLocator(subs=steps))
-        for axis in (ax.xaxis, ax.yaxis):
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(NullFormatter())
+        ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def cost(records: list[dict[str, Any]], error: float, key: str) -> float:

@@ -12,6 +12,7 @@ import corota as ct
 from corota import plots
 from corota.io.result_reader import read_results
 from corota.plots.contour import Drawing
+from corota.plots.figure import finish, look, new_figure
 from corota.results.sampling import sampled
 from corota.results.table import POSITIVE
 
@@ -154,3 +155,15 @@ def test_the_plastic_boundary_goes_with_any_variable(results: ct.Results) -> Non
     elastic.fix("right", x=0.01, y=None)
     with pytest.raises(ct.InputError, match="no plastic strain"):
         ct.solve(elastic, ct.Static(), threads=1).plot("MISES", plastic=True)
+
+
+def test_logarithmic_axes_have_plain_numbers(tmp_path: Path) -> None:
+    """Texts are not read as mathematics (names may hold a dollar sign), so powers are no markup."""
+    with look():
+        figure = new_figure(4.0, 3.0, shown=False)
+        ax = figure.add_subplot()
+        ax.loglog([10.0, 1000.0], [2e-3, 0.5])
+        finish(figure, tmp_path / "errors.png", dpi=80.0)
+        shown = [t.get_text() for axis in (ax.xaxis, ax.yaxis) for t in axis.get_ticklabels()]
+    assert {"0.01", "100"} <= set(shown)
+    assert not any("$" in text for text in shown)

@@ -174,6 +174,7 @@ def save(figure: Any, path: str | PathLike[str], dpi: float = 150.0) -> Path:
     hidden = target.with_name(f".{target.name}.next")
     try:
         with look():
+            _plain_powers(figure)
             figure.savefig(hidden, dpi=dpi, format=target.suffix[1:].lower())
         os.replace(hidden, target)
     except OSError as error:
@@ -181,6 +182,18 @@ def save(figure: Any, path: str | PathLike[str], dpi: float = 150.0) -> Path:
             hidden.unlink(missing_ok=True)
         raise full(error, target) from None
     return target
+
+
+def _plain_powers(figure: Any) -> None:
+    """Write the numbers of logarithmic axes without markup, which our texts do not read."""
+    from matplotlib.ticker import LogFormatter, LogFormatterMathtext
+
+    for axis in (axis for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)):
+        if isinstance(axis.get_major_formatter(), LogFormatterMathtext):
+            axis.set_major_formatter(lambda value, _: f"{value:g}")
+        minor = axis.get_minor_formatter()
+        if isinstance(minor, LogFormatterMathtext):
+            axis.set_minor_formatter(LogFormatter(minor_thresholds=minor.minor_thresholds))
 
 
 def label_axes(ax: Any, units: Units) -> None:
@@ -192,6 +205,7 @@ def label_axes(ax: Any, units: Units) -> None:
 
 def finish(figure: Any, path: str | PathLike[str] | None, dpi: float) -> Any:
     """Fit the texts into a figure of ours, and write it if there is a path; returns the figure."""
+    _plain_powers(figure)
     if figure in _OURS:
         fit_texts(figure)
     if path is not None:
