@@ -111,3 +111,48 @@ def test_a_uniform_pressure_is_uniform_at_nodes_of_quadratic_edges(element, law)
     np.testing.assert_allclose(results.nodal("CPRESS")[bottom], 8.0, rtol=1e-9)
     if law:
         np.testing.assert_allclose(results.frames[-1].U[bottom, 1], -0.02, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("element", "left", "stiff"),
+    [("Q4I", 0.0, 0.25), ("Q8R", 0.0, 1.0 / 12.0), ("Q4I", 0.1, 0.0), ("Q4I", 0.125, 0.0)],
+)
+@pytest.mark.parametrize("rigid", [False, True])
+def test_a_note_says_the_error_of_a_law_at_the_ends_of_the_master(element, left, stiff, rigid):
+    """With node_to_segment a slave node presses on its whole area, which the master covers in part.
+
+    A layer of the stiffness k under the force F over the length 1 sinks by F / k; mortar is exact.
+    """
+    cell = {"Q8R": "quad8"}.get(element, "quad4")
+    table = ct.mesh.rectangle(3.0, 0.2, 12, 2, cell=cell, origin=(-1.0, -0.2))
+    bodies = {"table": table}
+    if not rigid:
+        bodies["block"] = ct.mesh.rectangle(1.0, 0.1, 5, 1, cell=cell, origin=(left, 0.0))
+    mesh = ct.mesh.assembly(**bodies)
+    if rigid:
+        node = ct.mesh.add_node(mesh, left + 0.5, 0.0, "punch")
+    model = ct.Model(mesh)
+    for body in bodies:
+        model.section(body, element=element, material=ct.Elastic(E=1e7))
+    model.fix("table.bottom")
+    if rigid:
+        master = ct.RigidCurve.line((left + 1.0, 0.0), (left, 0.0), reference=node)
+        model.fix("punch", x=0.0, rotation=0.0)
+        model.force("punch", y=-12.0)
+    else:
+        master = "block.bottom"
+        model.fix("block.left", x=0.0, y=None)
+        model.force("block.top", y=-12.0)
+    layer = ct.PressureLaw("linear", 1e3)
+    for method in ("node_to_segment", "mortar"):
+        model.contacts.clear()
+        model.contact("table.top", master, law=layer, method=method, name="layer")
+        results = ct.solve(model, ct.Static(nlgeom=False), threads=1)
+        notes = [note for note in results.notes if "within slave edges" in note]
+        sunk = -results.history("U2", at="punch" if rigid else "block.top", combine="mean")[-1]
+        wrong = 0.012 / sunk - 1.0
+        if method == "mortar" or stiff == 0.0:
+            assert not notes and abs(wrong) < 0.01
+        else:
+            assert len(notes) == 1 and f"{stiff:.0%} too stiff" in notes[0]
+            assert wrong == pytest.approx(stiff, abs=0.01)

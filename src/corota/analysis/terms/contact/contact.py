@@ -49,6 +49,7 @@ fillet_note = lazy("corota.analysis.terms.contact.messages:fillet_note")
 guided_round_note = lazy("corota.analysis.terms.contact.messages:guided_round_note")
 contact_output = lazy("corota.analysis.terms.contact.output:output")
 what_gives_way = lazy("corota.analysis.terms.contact.messages:gives_way")
+partly_covered_note = lazy("corota.analysis.terms.contact.messages:partly_covered_note")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 near_side = lazy("corota.analysis.terms.contact.kinks:near_side")
 
@@ -314,6 +315,9 @@ class ContactTerm(Term):
         area = raw["total_area"]
         seen = covered(area, pair.full)
         gap = np.where(seen, raw["total_gap"] / np.where(seen, area, 1.0), 0.0)
+        if self.number == 1:
+            note = partly_covered_note(pair, area, x[:, :2], mesh.node_labels)
+            self.notes += [note] if note else []
         if item.clearance is not None:
             pair.core.offset = np.where(seen, gap - item.clearance, 0.0)
             gap = np.where(seen, item.clearance, 0.0)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.gaps import WAITED
+from corota.analysis.terms.contact.gaps import SAME, WAITED, covered
 from corota.analysis.terms.contact.surface import CORNER, NONE, blunt_turns, sharp_corners
 from corota.model.contact import ContactPair, RigidCurve
 
@@ -209,6 +209,70 @@ def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
     )
 
 
+#: Note alone: error of the area under a pressure law from which it is reported, relative to it.
+WRONG_AREA = 0.01
+
+
+def partly_covered_note(pair: Pair, area: Floats, x: Floats, labels: Ints) -> str:
+    """A remark on slave nodes at the ends of a master under a pressure law, or ''.
+
+    With node_to_segment a node presses on its whole area, though the master covers a part of it.
+
+    Parameters
+    ----------
+    area : ndarray, shape (n,)
+        Areas of the constraints that have an opposite surface.
+    x : ndarray, shape (n_nodes, 2)
+        Positions at the start.
+    """
+    item, slave = pair.item, pair.slave
+    pointwise = slave.pointwise or pair.beside is not None
+    if pair.law is None or pointwise or not isinstance(item, ContactPair) or item.itself:
+        return ""
+    ends = _ends(pair, x)
+    seen = covered(area, pair.full)
+    inside = seen[pair.place[slave.nodes]] & (slave.nodes >= 0)
+    excess, named = 0.0, []
+    for row in np.flatnonzero(inside[:, 0] != inside[:, 1]).tolist():
+        a, b, middle = slave.nodes[row].tolist()
+        if not inside[row, 0]:
+            a, b = b, a
+        along, away = x[b] - x[a], ends - x[a]
+        length = float(np.hypot(*along))
+        part = away @ along / length**2
+        off = np.abs(away[:, 0] * along[1] - away[:, 1] * along[0]) / length
+        off[(part <= -SAME) | (part >= 1.0 - SAME)] = np.inf
+        if not len(ends) or off.min() > pair.reach:
+            continue
+        taken = 0.5 if middle < 0 else 1.0 / 6.0 + 2.0 / 3.0 * inside[row, 2]
+        depth = slave.thickness[row] or math.pi * (x[a, 0] + x[b, 0])
+        excess += (taken - float(part[np.argmin(off)])) * length * depth
+        named.append(str(labels[a]))
+    exact = float(area[: pair.of_nodes][seen[: pair.of_nodes]].sum()) - excess
+    if abs(excess) <= WRONG_AREA * exact:
+        return ""
+    return (
+        f"contact pair {pair.name!r}: the master ends within slave edges (node "
+        f"{', '.join(named)}). With node_to_segment a pressure law acts on the whole area of each "
+        f"slave node: the layer is {abs(excess) / exact:.0%} too "
+        f"{'stiff' if excess > 0.0 else 'soft'} at the start. Exchange slave and master, or use "
+        "method='mortar'"
+    )
+
+
+def _ends(pair: Pair, x: Floats) -> Floats:
+    """Points at which a master ends, shape (k, 2); those of a rigid curve in the reference."""
+    if pair.master is not None:
+        ids, count = np.unique(pair.master.nodes[:, :2], return_counts=True)
+        return x[ids[count == 1]]
+    rows = pair.item.master.segments  # type: ignore[union-attr]
+    points = np.concatenate([rows[:, :2], rows[:, 2:4]])
+    place = np.round(points / (SAME * pair.size))
+    _, first, count = np.unique(place, axis=0, return_index=True, return_counts=True)
+    alone: Floats = points[first[count == 1]]
+    return alone
+
+
 #: Note alone: depth from which a penetration is reported, and beyond which it is on the far side of
 #: a body [edges].
 NAMED, FAR = 0.1, 2.0
@@ -306,5 +370,6 @@ __all__ = [
     "guided_round_note",
     "missed_peaks",
     "pair_forces",
+    "partly_covered_note",
     "sunk_corner",
 ]
