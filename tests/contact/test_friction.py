@@ -1,6 +1,8 @@
 """Coulomb friction: stick on an incline, sliding, its work, reversal."""
 
 # SPDX-License-Identifier: BSD-3-Clause
+import math
+
 import numpy as np
 import pytest
 
@@ -80,3 +82,42 @@ def test_friction_turns_with_the_motion(law):
     lost = results.history("friction energy").values
     assert (np.diff(lost) >= -1e-12).all()
     assert results.nodal("CSTATUS").max() == 2.0
+
+
+@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+@pytest.mark.parametrize("elements", [True, False])
+def test_the_message_names_bodies_that_slide_from_load_zero_on(method, elements):
+    """A ladder below its angle of friction, and a stack whose lowest joint slides."""
+    floor = ct.RigidCurve.line((-1.0, 0.0), (3.0, 0.0))
+    if elements:
+        a, b = (ct.mesh.rectangle(2.0, 0.4, n, 1, origin=(0.0, y)) for n, y in ((3, 0.0), (2, 0.4)))
+        model = ct.Model(ct.mesh.assembly(a=a, b=b))
+        model.section("all", element="Q4I", material=ct.Elastic(E=1e5, nu=0.3))
+        model.contact("a.bottom", floor, friction=0.3, method=method, name="floor")
+        model.contact("b.bottom", "a.top", friction=0.3, method=method, name="joint")
+        model.force("b.top", y=-10.0)
+        model.force("b.left", x=1.5)
+        model.force("a.left", x=1.6)
+    else:
+        angle = math.atan((1.0 - 0.4**2) / 0.8) - math.radians(1.5)
+        foot, head = (math.cos(angle), 0.0), (0.0, math.sin(angle))
+        model = ct.Model(ct.mesh.line([foot, head], n=4))
+        model.beam("all", material=ct.Elastic(E=1e6), area=0.01, inertia=1e-5)
+        model.line_load(y=-1.0)
+        wall = ct.RigidCurve.line((0.0, 3.0), (0.0, -1.0))
+        for end, master in (("start", floor), ("end", wall)):
+            nodes = model.mesh.node_sets[end]
+            model.contact(nodes, master, friction=0.4, method=method, name=end)
+    with pytest.raises(ct.ConvergenceError, match="they slide"):
+        ct.solve(model, ct.Static(), threads=1)
+
+
+def test_the_message_of_a_block_that_tips_from_load_zero_on_names_no_sliding():
+    model = ct.Model(ct.mesh.rectangle(1.0, 3.0, 4, 8))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e5, nu=0.3))
+    floor = ct.RigidCurve.line((-5.0, 0.0), (5.0, 0.0))
+    model.contact("bottom", floor, friction=0.9, name="floor")
+    model.force("top", x=2.0, y=-8.0)
+    with pytest.raises(ct.ConvergenceError) as error:
+        ct.solve(model, ct.Static(), threads=1)
+    assert "slide" not in str(error.value)

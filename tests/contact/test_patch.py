@@ -137,7 +137,7 @@ def test_a_note_says_the_error_of_a_law_at_the_ends_of_the_master(element, left,
     model.fix("table.bottom")
     if rigid:
         master = ct.RigidCurve.line((left + 1.0, 0.0), (left, 0.0), reference=node)
-        model.fix("punch", x=0.0, rotation=0.0)
+        model.fix("punch", x=0.0, y=None, rotation=0.0)
         model.force("punch", y=-12.0)
     else:
         master = "block.bottom"

@@ -100,6 +100,8 @@ class ContactTerm(Term):
         #: The displacement that slips are measured from, and the positions there.
         self._begun: tuple[Floats, Floats] | None = None
         self.at: ContactState | None = None
+        #: Message alone: which friction forces exceeded in an attempt from load zero, or ''.
+        self.overcome = ""
         self.period, self.number = 1.0, 0
         #: Time of a static step over which initial overlaps are removed at once.
         self.first = 0.0
@@ -234,6 +236,8 @@ class ContactTerm(Term):
         for pair in self.pairs:
             pair.fixed = pair.start = None
             pair.hold(constrained, self.persistent)
+            if pair.law is not None and pair.active and pair.entered == self.number:
+                pair.measure(self.positions(self.u))
             if self.number == 1 and pair.guided_ends.any() and not self.system.axisymmetric:
                 mesh = self.system.model.mesh
                 note = guided_round_note(pair, mesh.points, mesh.node_labels)
@@ -323,7 +327,6 @@ class ContactTerm(Term):
             gap = np.where(seen, item.clearance, 0.0)
         pair.overlap = np.minimum(gap, 0.0)
         pair.base = pair.core.offset
-        pair.area = np.where(seen, area, pair.full)
         adjusted = item.start == "adjust"
         moved = np.full(len(gap), adjusted)
         if adjusted and item.adjust_nodes is not None:
@@ -585,7 +588,7 @@ class ContactTerm(Term):
             self._damping_force = contact_state.damping * (u - self.u)
             mean = self._damping_force + (before if len(before) else 0.0)
             self.damping_work += 0.5 * float(mean @ (u - self.u))
-        self.slip_start = None
+        self.slip_start, self.overcome = None, ""
         moved, law = u - self.u, self.energies()["ALLCL"]
         contact_state.where = self.positions(0.5 * (self.u + u) if self.persistent else u)
         self.u, self.committed, self.time = u.copy(), contact_state.multipliers.copy(), step_time

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 #: Message alone: part of the force of a pair from which a node carries it alone, and of its
 #: friction bound from which friction is used up.
 WHOLE = 0.99
+#: And part of it beyond which equilibrium asks for more than friction gives.
+EXCEEDS = 1.001
 
 
 def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
@@ -57,10 +59,13 @@ def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
             f"node{'s' if len(flipping) > 1 else ''} {names}"
             f"{', ...' if len(flipping) > 5 else ''} of pair {flipping[0][1].name!r}"
         )
+    problem.term.overcome = problem.term.overcome or _overcome(problem, at)
     if way := gives_way(problem.term):
         said += f"; {way}"
     elif problem.sliding >= WAITED:
         said += "; friction does not hold the bodies: they slide"
+    elif problem.term.overcome:
+        said += f"; {problem.term.overcome}"
     if problem.loose:
         said += f"; without contact pressure, {problem.loose}"
     if problem.pivoted:
@@ -69,6 +74,26 @@ def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
             "(by pivoting), which did not converge either"
         )
     return said + sunk_corner(problem.system)
+
+
+def _overcome(problem: ContactProblem, at: Evaluation) -> str:
+    """Whether forces exceed friction from load zero on, when nothing is pressed yet; or ''.
+
+    The sum of the tractions of a failed attempt is what equilibrium asks of a pair.
+    """
+    if any(p.any() for p, _ in problem.term.parts(problem.term.committed)):
+        return ""
+    used: dict[str, float] = {}
+    for pair, terms, (p, q) in problem.pairs(at.contact_state):
+        bound = float((pair.bound(np.maximum(p, 0.0)) * terms.area).sum())
+        if pair.rubs and bound > 0.0:
+            used[pair.name] = abs(float((q * terms.area).sum())) / bound
+    name = max(used, key=lambda name: used[name], default="")
+    if name and (used[name] > EXCEEDS or min(used.values()) > WHOLE):
+        return (
+            f"friction of contact pair {name!r} does not hold the bodies from the start: they slide"
+        )
+    return ""
 
 
 def gives_way(contact_term: ContactTerm) -> str:
@@ -264,7 +289,7 @@ def _ends(pair: Pair, x: Floats) -> Floats:
     """Points at which a master ends, shape (k, 2); those of a rigid curve in the reference."""
     if pair.master is not None:
         ids, count = np.unique(pair.master.nodes[:, :2], return_counts=True)
-        return x[ids[count == 1]]
+        return np.asarray(x[ids[count == 1]])
     rows = pair.item.master.segments  # type: ignore[union-attr]
     points = np.concatenate([rows[:, :2], rows[:, 2:4]])
     place = np.round(points / (SAME * pair.size))

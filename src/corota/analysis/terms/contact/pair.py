@@ -247,6 +247,12 @@ class Pair:
         gradient = np.where(slides[terms.constraint, None], terms.slip_gradient, 0.0)
         return replace(terms, slip=np.where(slides, terms.slip, 0.0), slip_gradient=gradient)
 
+    def measure(self, x: Floats) -> None:
+        """Take the areas of a pressure law at the start, weak parts with those of their owners."""
+        self.core.search(x)
+        area = self._read(self.core.evaluate(x, x)).area
+        self.area = np.where(covered(area, self.full), area, self.full)
+
     def gaps_at(self, term: Any, number: int, x: Floats) -> Terms:
         """Gaps of the committed state, at positions `x`, without conditions on their rates."""
         if term.at is not None:
