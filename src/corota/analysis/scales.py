@@ -200,9 +200,13 @@ class Scales:
     def implausible_displacement(self, u: Floats) -> str:
         """Why a static displacement is implausible; empty if it is not.
 
-        A constrained body moves at most by its supports and its own deformation.
+        A constrained body moves at most by its supports and its own deformation. Elements take
+        rotations of their nodes up to whole turns: a node that an iterate turned once more is in
+        equilibrium as well.
         """
         system = self.system
+        if system.nlgeom and (twisted := self._twisted(u)):
+            return twisted
         if not self._bodies or not (system.nlgeom or any(term.joins for term in self.terms)):
             return ""
         begun = 0.0 if self._begun is None else self._begun
@@ -219,6 +223,26 @@ class Scales:
             f"node {node} moves by {moved[worst]:.3g}, {moved[worst] / system.length:.2g} times "
             "the size of the model: its body is unconstrained; add a support"
         )
+
+    def _twisted(self, u: Floats) -> str:
+        """Which nodes of an element turn against each other by more than half a turn in a step."""
+        system = self.system
+        turned = u[: system.n_dofs] - (0.0 if self._begun is None else self._begun)
+        for block in system.blocks:
+            if elements.find(block.section.element).dofs_per_node < 3:
+                continue
+            angles = turned[system.start[block.nodes] + 2]
+            first, last = angles.argmin(axis=1), angles.argmax(axis=1)
+            apart = np.take_along_axis(angles, np.stack([first, last], 1), 1) @ [-1.0, 1.0]
+            worst = int(apart.argmax())
+            if apart[worst] > np.pi:
+                ends = block.nodes[worst, [first[worst], last[worst]]]
+                a, b = system.model.mesh.node_labels[ends]
+                return (
+                    f"nodes {a} and {b} of an element turn against each other by "
+                    f"{apart[worst]:.3g}, more than half a turn"
+                )
+        return ""
 
 
 def _ratio(size: float, scale: float) -> float:

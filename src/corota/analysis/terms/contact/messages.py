@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 #: Message alone: part of the force of a pair from which a node carries it alone, and of its
 #: friction bound from which friction is used up.
 WHOLE = 0.99
-#: And part of it beyond which equilibrium asks for more than friction gives.
+#: And part of it beyond which equilibrium needs more than friction gives.
 EXCEEDS = 1.001
 
 
