@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import Multifrontal
 from tests.audits.test_contact_arcs import belt, polygon_ratio
 from tests.support.blocks import METHODS, STIFF, block, chain, reaction, scalar, solve
 from tests.support.pairs import quickly
@@ -110,12 +112,32 @@ def test_a_rope_over_half_a_drum_slips_one_way_from_the_first_correction(
     assert increments == 1
 
 
+@pytest.mark.parametrize("element", ["beam", "OPT"])
+def test_a_node_a_whole_turn_off_its_neighbors_is_refused(element: str) -> None:
+    """No element has a force then. A body that turns whole turns is accepted."""
+    mesh = ct.mesh.line([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], n=1)
+    if element == "OPT":
+        mesh = ct.mesh.rectangle(2.0, 1.0, 2, 1, "tri3")
+    model = ct.Model(mesh)
+    if element == "beam":
+        model.beam("all", material=ct.Elastic(E=1e6), area=1e-3, inertia=1e-8)
+    else:
+        model.section("all", element="OPT", material=ct.Elastic(E=1e6, nu=0.3))
+    system = System(model, Multifrontal())
+    system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
+    off = np.zeros(system.n_dofs)
+    off[system.start[1] + 2] = TURN
+    assert np.abs(system.evaluate(off, 0.0).residual).max() < 1e-6
+    assert "against each other by 6.28" in system.scales.implausible_displacement(off)
+    assert not system.scales.implausible_displacement(np.where(system.is_rotation, TURN, 0.0))
+
+
 def test_no_node_of_a_wire_drawn_over_a_bar_turns_once_more_than_its_neighbors() -> None:
     """Elements take nodal rotations up to whole turns: three nodes that an iterate had turned by
     2 pi were in equilibrium, with a slip of a whole round and friction the wrong way (pull 6 %
     less). The tension is that of exp(mu pi) within the turn of the chords."""
     mu, way, n, span = 0.25, 0.1, 48, 16
-    angles = np.linspace(math.pi, 0.0, n + 1)
+    angles = np.radians(np.linspace(180.0, 0.0, n + 1))
     arc = list(np.column_stack([np.cos(angles), np.sin(angles)]))
     mesh = ct.mesh.line([(-1.0, -1.0), *arc, (1.0, -1.0)], n=[span, *[1] * n, span])
     model = ct.Model(mesh)

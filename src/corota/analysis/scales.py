@@ -234,6 +234,7 @@ class Scales:
             angles = turned[system.start[block.nodes] + 2]
             first, last = angles.argmin(axis=1), angles.argmax(axis=1)
             apart = np.take_along_axis(angles, np.stack([first, last], 1), 1) @ [-1.0, 1.0]
+            apart[self.conditions.changes.removed[block.cells]] = 0.0
             worst = int(apart.argmax())
             if apart[worst] > np.pi:
                 ends = block.nodes[worst, [first[worst], last[worst]]]
