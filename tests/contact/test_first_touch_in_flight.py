@@ -7,6 +7,8 @@ pass as rounding.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -49,3 +51,32 @@ def test_no_frame_lies_behind_the_wall(element: str, scheme: str, method: str) -
         if scheme != "energy_momentum":
             assert gap.min() > least
         assert frame.scalars["residual"] < 1e-6
+
+
+@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+def test_a_layer_that_comes_within_the_search_distance_does_not_act(method):
+    """Energy-momentum in fixed increments: a block swings towards a layer that it does not reach.
+
+    The gap enters the search open; it had been taken for one that begins with the first pressure.
+    """
+    length, angle = 2.0, 0.6
+    x, y = length * math.sin(angle), -length * math.cos(angle)
+    bob = ct.mesh.rectangle(0.4, 0.4, 2, 2, origin=(x, y))
+    links = [
+        ct.mesh.line([(s, h), (x + s, y + h)], 1, f"link{k}")
+        for k, (s, h) in enumerate([(0.0, 0.4), (0.4, 0.4)])
+    ]
+    mesh = ct.mesh.merge(bob, *links)
+    mesh.cell_sets["bob"] = np.arange(4)
+    model = ct.Model(mesh)
+    model.section("bob", element="Q4I", material=ct.Elastic(E=1e5, nu=0.3, rho=1.0))
+    for k in (0, 1):
+        model.truss(f"link{k}", material=ct.Elastic(E=1e6, rho=1e-6), area=0.1)
+        model.fix(f"link{k}.start")
+    model.gravity(y=-5.0, cells="bob")
+    wall = ct.RigidCurve.line((0.0, 5.0), (0.0, -9.0))
+    model.contact("left", wall, law=ct.PressureLaw("linear", 200.0), method=method, name="stop")
+    swing = ct.Dynamic(period=0.6, increments=120, scheme="energy_momentum")
+    results = ct.solve(model, swing, threads=1)
+    np.testing.assert_array_equal(results.history("stop: force x"), 0.0)
+    assert abs(results.frames[-1].scalars["energy balance"]) < 1e-6

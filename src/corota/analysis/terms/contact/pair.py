@@ -218,7 +218,7 @@ class Pair:
             terms.between = discrete_gradient(
                 terms,
                 self._shared(middle),
-                self.gap_of_start(),
+                self.gap_of_start(terms),
                 self.full,
                 (old, x),
                 getattr(self.item, "master", None),
@@ -376,16 +376,18 @@ class Pair:
         """Take the gaps of a state for the start of an increment."""
         self.start = terms.parts
 
-    def gap_of_start(self) -> Floats:
+    def gap_of_start(self, terms: Terms) -> Floats:
         """Weighted gaps that the increment began with, shape (n,).
 
-        Where a pressure law had no opposite surface, it begins with its first pressure.
+        Where a pressure law had no opposite surface, it begins with its first pressure, or with the
+        gap of the end if it is open then.
         """
         assert self.start is not None
         gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
         if self.law is None:
             return gap
-        return np.where(covered(area, self.full), gap, -self.conditions.start * self.area)
+        first = np.maximum(-self.conditions.start * self.area, terms.gap)
+        return np.where(covered(area, self.full), gap, first)
 
     def _read(self, raw: _core._Gaps) -> Terms:
         self.seen = self.seen or bool(len(raw["constraint"]))
@@ -493,7 +495,7 @@ class Pair:
         A slip changes a shear traction `q` by the stiffness of the node. Where this is nothing
         beside the traction, as of a node that a support draws along, the sign of the slip decides.
         """
-        begin = None if self.start is None or self.law is None else self.gap_of_start()
+        begin = None if self.start is None or self.law is None else self.gap_of_start(terms)
         stiffness = self.stiffness
         if q is not None and self.rubs:
             by_sign = np.abs(q) / (TURNS_ROUND * self.edge)
