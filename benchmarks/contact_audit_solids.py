@@ -19,6 +19,7 @@ from benchmarks.contact_audit_statics import (
     largest_factor,
     pull,
     solids,
+    sprung_block,
     variants,
 )
 
@@ -674,14 +675,7 @@ def folded_strip_whose_arms_rub() -> Iterator[Row]:
 def stick_and_slip_on_a_path() -> Iterator[Row]:
     """A sprung block under displacement control: the load is mu P + k (u - mu P / K)."""
     for method, element in variants(("Q4I", "Q8")):
-        mesh = ct.mesh.merge(
-            box(element, 1.0, 0.5, 4, 2), ct.mesh.line([(1.0, 0.25), (2.0, 0.25)], 1, "spring")
-        )
-        mesh.cell_sets["block"] = np.arange(mesh.n_cells - 1)
-        model = ct.Model(mesh)
-        model.section("block", element=element, material=ct.Elastic(E=1e5, nu=0.3))
-        model.spring("spring", 20.0)
-        model.fix("spring.end")
+        model = sprung_block(element)
         floor = ct.RigidCurve.line((-2.0, 0.0), (8.0, 0.0))
         model.contact("bottom", floor, friction=0.3, method=method, name="floor")
         model.force("top", y=-10.0)

@@ -62,6 +62,18 @@ def solids(element: str | dict[str, str], E: float = 1e5, **bodies: Any) -> ct.M
     return model
 
 
+def sprung_block(element: str) -> ct.Model:
+    """A block 1 x .5 at the end of a spring of stiffness 20, whose other end is held."""
+    spring = ct.mesh.line([(1.0, 0.25), (2.0, 0.25)], 1, "spring")
+    mesh = ct.mesh.merge(box(element, 1.0, 0.5, 4, 2), spring)
+    mesh.cell_sets["block"] = np.arange(mesh.n_cells - 1)
+    model = ct.Model(mesh)
+    model.section("block", element=element, material=ct.Elastic(E=1e5, nu=0.3))
+    model.spring("spring", 20.0)
+    model.fix("spring.end")
+    return model
+
+
 def pull(results: ct.Results, pair: str, of: str = "force x") -> float:
     """Last value of a history of a pair."""
     return float(results.history(f"{pair}: {of}")[-1])
@@ -304,14 +316,7 @@ def shear_limit_and_coefficients_by_pressure() -> Iterator[Row]:
 def spring_held_by_friction_that_falls() -> Iterator[Row]:
     """A sprung block that friction holds goes back to the force of the smaller coefficient."""
     for method, element in variants(("Q4I", "Q8")):
-        mesh = ct.mesh.merge(
-            box(element, 1.0, 0.5, 4, 2), ct.mesh.line([(1.0, 0.25), (2.0, 0.25)], 1, "spring")
-        )
-        mesh.cell_sets["block"] = np.arange(mesh.n_cells - 1)
-        model = ct.Model(mesh)
-        model.section("block", element=element, material=ct.Elastic(E=1e5, nu=0.3))
-        model.spring("spring", 20.0)
-        model.fix("spring.end")
+        model = sprung_block(element)
         floor = ct.RigidCurve.line((-2.0, 0.0), (8.0, 0.0))
         model.contact(
             "bottom", floor, friction=0.3, friction_steps={3: 0.1}, method=method, name="floor"
@@ -554,14 +559,7 @@ def surfaces_that_stay_together_slide() -> Iterator[Row]:
 def joint_that_ends_and_begins() -> Iterator[Row]:
     """A sprung block that leaves its brake goes to the spring; the brake takes hold there again."""
     for method, element in variants(("Q4I", "Q8")):
-        mesh = ct.mesh.merge(
-            box(element, 1.0, 0.5, 4, 2), ct.mesh.line([(1.0, 0.25), (2.0, 0.25)], 1, "spring")
-        )
-        mesh.cell_sets["block"] = np.arange(mesh.n_cells - 1)
-        model = ct.Model(mesh)
-        model.section("block", element=element, material=ct.Elastic(E=1e5, nu=0.3))
-        model.spring("spring", 20.0)
-        model.fix("spring.end")
+        model = sprung_block(element)
         ground = ct.RigidCurve.line((-2.0, 0.0), (8.0, 0.0))
         plate = ct.RigidCurve.line((8.0, 0.5), (-2.0, 0.5))
         model.contact("bottom", ground, method=method, name="smooth")

@@ -241,7 +241,7 @@ class Scales:
                 a, b = system.model.mesh.node_labels[ends]
                 return (
                     f"nodes {a} and {b} of an element turn against each other by "
-                    f"{apart[worst]:.3g}, more than half a turn"
+                    f"{apart[worst]:.3g}, more than half a turn in this step: take more elements"
                 )
         return ""
 
