@@ -384,7 +384,7 @@ class System(NumberedModel):
         return link.expand(x)
 
     def singular(self, error: SingularError) -> SingularError:
-        """The same error in terms of nodes."""
+        """The error of a singular matrix in terms of nodes."""
         from corota.analysis.free_motion import name_motion
 
         return name_motion(self, error, self.scales.ratio)

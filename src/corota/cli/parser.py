@@ -43,7 +43,7 @@ class Help(argparse.HelpFormatter):
 
 
 class Overview(Help, argparse.RawDescriptionHelpFormatter):
-    """The same, with line breaks as they are."""
+    """Help whose description keeps its line breaks."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog)

@@ -36,7 +36,7 @@ class Measure(ABC):
 
     @abstractmethod
     def value(self, point: Point) -> float:
-        """Its value."""
+        """Value at a state."""
 
     def direct(self, point: Point) -> float:
         """Value at a varied state, without the part that :meth:`by_reaction` weighs."""
@@ -147,7 +147,7 @@ class Combination(Measure):
         self.parts, self.function, self.partials = list(parts), function, partials
 
     def value(self, point: Point) -> float:
-        """Its value; parts of other frames cannot be evaluated at one point."""
+        """Value at a state; parts of other frames cannot be evaluated at one point."""
         return self.function([part.value(point) for part in self.parts])
 
 
@@ -205,7 +205,7 @@ class Displacement(Measure):
     state_only = True
 
     def value(self, point: Point) -> float:
-        """Its value."""
+        """Value at a state."""
         return float(self.by_displacement(point) @ point.u)
 
     def by_displacement(self, point: Point) -> Floats:
@@ -230,7 +230,7 @@ class Velocity(Measure):
     state_only = True
 
     def value(self, point: Point) -> float:
-        """Its value.
+        """Value at a state.
 
         Raises
         ------
@@ -263,11 +263,11 @@ class Reaction(Measure):
     state_only = True
 
     def value(self, point: Point) -> float:
-        """Its value."""
+        """Value at a state."""
         return float(self.by_reaction(point) @ point.reaction)
 
     def direct(self, point: Point) -> float:
-        """Nothing: all of it is reaction."""
+        """Zero: parameters act on it through the reaction alone."""
         return 0.0
 
     def by_reaction(self, point: Point) -> Floats:
@@ -301,7 +301,7 @@ class LoadFactor(Measure):
     state_only = True
 
     def value(self, point: Point) -> float:
-        """Its value."""
+        """Value at a state."""
         return point.increment.factor
 
     def direct(self, point: Point) -> float:
@@ -325,7 +325,7 @@ class StrainEnergy(Measure):
     frame: int = -1
 
     def value(self, point: Point) -> float:
-        """Its value."""
+        """Value at a state."""
         here = point.system.in_space(point.u)
         return float(sum(b["total_energy"] for b in fields_of(point.system.core, here, point)))
 
@@ -361,7 +361,7 @@ class Mass(Measure):
     frame: int = -1
 
     def value(self, point: Point) -> float:
-        """Its value."""
+        """Value at a state."""
         return _volume(point, self.cells, weighed=True)
 
 
@@ -380,7 +380,7 @@ class Area(Measure):
     frame: int = -1
 
     def value(self, point: Point) -> float:
-        """Its value."""
+        """Value at a state."""
         return _volume(point, self.cells, weighed=False)
 
 
@@ -404,7 +404,7 @@ class Width(Measure):
     frame: int = -1
 
     def value(self, point: Point) -> float:
-        """Its value."""
+        """Value at a state."""
         mesh = point.system.model.mesh
         found, edges = [], {}
         for name in (self.one, self.other):
@@ -501,7 +501,7 @@ class Stress(Measure):
         self._component = components.get(self.variable)
 
     def value(self, point: Point) -> float:
-        """Its value."""
+        """Value at a state."""
         system = point.system
         fields = fields_of(system.core, system.in_space(point.u), point)
         wanted = _cells(point, self.cells)

@@ -34,7 +34,7 @@ class Parameter(ABC):
 
     @abstractmethod
     def values(self, model: Model) -> Floats:
-        """Their present values."""
+        """Present values of the parameters."""
 
     @abstractmethod
     def vary(self, model: Model, index: int, change: float) -> Model:

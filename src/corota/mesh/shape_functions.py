@@ -21,7 +21,7 @@ def shape_functions(kind: str, at: Floats) -> Floats:
 
 
 def shape_gradients(kind: str, at: Floats) -> Floats:
-    """Their derivatives by both natural coordinates, shape (m, 2, k)."""
+    """Derivatives of the shape functions by both natural coordinates, shape (m, 2, k)."""
     powers = KINDS[kind].powers
     parts = []
     for axis in (0, 1):

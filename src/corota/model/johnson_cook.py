@@ -124,7 +124,7 @@ class JohnsonCook(LawOfTheCore):
         return self.A
 
     def with_temperatures(self) -> MaterialTable:
-        """The same material at the temperatures of the model (``temperature`` of steps)."""
+        """The material at the temperatures of the model (``temperature`` of steps)."""
         if self.melting is None:
             raise InputError("without melting the strength has no temperature", self.where)
         low = self.transition - 10.0 * (self.melting - self.transition)

@@ -67,7 +67,7 @@ class Expansion(Brief):
 
     @staticmethod
     def of(value: float | tuple[float, float, float] | Expansion) -> Expansion:
-        """The same as an expansion."""
+        """An expansion from one or three coefficients."""
         return value if isinstance(value, Expansion) else Expansion((value,))
 
     def __post_init__(self) -> None:

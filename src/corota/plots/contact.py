@@ -41,8 +41,8 @@ def contact_line(
 ) -> Any:
     """Draw pressure, and shear traction if there is any, along the slave surface of a pair.
 
-    The abscissa is the length along the undeformed surface, the body on the left; the part
-    is closed is shown, with a tenth more on either side.
+    The abscissa is the length along the undeformed surface, the body on the left; the closed part
+    is shown, with a tenth more on either side.
 
     Parameters
     ----------

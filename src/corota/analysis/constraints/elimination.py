@@ -92,7 +92,7 @@ class LinearizedConstraints:
         return self.move(out)
 
     def linear(self) -> LinearizedConstraints:
-        """The same without second derivatives: for matrices that are not tangents."""
+        """These constraints without second derivatives: for matrices that are not tangents."""
         return replace(self, curvature=0.0)
 
     @cached_property

@@ -211,7 +211,7 @@ class Reduction:
     def reduce_full(
         self, matrix: Sparse, turned: Rows, g: Sparse, geometric_stiffness: Floats
     ) -> Sparse:
-        """The same for a full matrix, scipy CSC."""
+        """Reduce a full matrix, scipy CSC."""
         import scipy.sparse as sp
 
         t = self.whole(turned)

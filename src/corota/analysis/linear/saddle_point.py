@@ -256,7 +256,7 @@ class SaddlePointSystem:
         return self._spread(x), x[self.nf :], negative
 
     def correct_with_last_factor(self, force: Floats) -> tuple[Floats, Floats]:
-        """The same for one more force, shape (n_dofs,), with the last factorization.
+        """Corrections for one more force, shape (n_dofs,), with the last factorization.
 
         Prescribed dofs and constraints do not change.
         """

@@ -223,7 +223,7 @@ class Reduced:
         return self.lin.expand(self.unknowns(q, s))
 
     def unknowns(self, q: Any, s: Any) -> Any:
-        """The same for all unknowns, with the multipliers of contact and ties."""
+        """Change of all unknowns, with the multipliers of contact and ties; as `displacement`."""
         found = self.lin.from_active(self.shapes @ q)
         return found + self.static @ s
 

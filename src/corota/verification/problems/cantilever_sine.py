@@ -61,7 +61,7 @@ def beams(n: int = 60, increments: int = 960) -> np.ndarray:
 
 @cache
 def solid(element: str, cells: int = 32, increments: int = 480) -> np.ndarray:
-    """The same by planar elements."""
+    """The cantilever of planar elements."""
     return sine_path(element, increments, cells=cells)
 
 

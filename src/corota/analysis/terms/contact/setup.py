@@ -298,7 +298,7 @@ def _thickness(system: NumberedModel, slave: Surface) -> Floats:
 
 
 def tie_core(system: NumberedModel, item: Tie) -> Core:
-    """The same for a tie; slave edges out of its tolerance are not tied."""
+    """Pair of the core for a tie; slave edges out of its tolerance are not tied."""
     mesh = system.model.mesh
     x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
     slave, master = surface(system, item.slave, item), surface(system, item.master, item)
