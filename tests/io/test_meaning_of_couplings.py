@@ -53,6 +53,33 @@ def read(path: Path, cards: str, load: str = FORCE, nlgeom: str = "") -> ct.Mode
     return ct.read(deck)
 
 
+#: Axial force, moment, shear force at the middle of the end: displacement of its lower corner.
+#: ``F l/EA``, ``M l h/2 EI``, Timoshenko's beam; CalculiX: ``F (l - a)/EA`` with edges ``a``.
+ENDS = {
+    "50, 1, 1.\n": (0, 0.004, 1e-9),
+    "50, 6, 1.\n": (0, 0.024, 1e-9),
+    "50, 2, 1.\n": (1, 0.256 + 1.2 * 4.0 / 500.0, 0.022),
+}
+
+
+@pytest.mark.parametrize("load", ENDS)
+@pytest.mark.parametrize("kind", ["*DISTRIBUTING\n", "*KINEMATIC\n", "*KINEMATIC\n1, 6\n"])
+def test_the_end_of_one_point_elements_moves_as_a_beam(
+    kind: str, load: str, tmp_path: Path
+) -> None:
+    """One row of CPS4R; the bending is exact, the shear that of a coarse mesh."""
+    component, wanted, tolerance = ENDS[load]
+    cards = "*COUPLING, REF NODE=50, SURFACE=RS, CONSTRAINT NAME=C\n" + kind
+    deck = tmp_path / "deck.inp"
+    text = BEAM.format(cards=cards, load="*CLOAD\n" + load, nlgeom="")
+    text = text.replace("CPS4", "CPS4R").replace("50, 5., .5", "50, 4., .5")
+    deck.write_text(text)
+    for as_written in (False, True):
+        u = ct.solve(ct.read(deck, as_written=as_written), threads=1).frames[-1].U
+        assert u[4, component] == pytest.approx(wanted, rel=tolerance)
+        assert u[-1, :2] == pytest.approx(0.5 * (u[4] + u[9])[:2], rel=1e-9, abs=1e-12)
+
+
 def solve(path: Path, cards: str, load: str = FORCE) -> ct.Results:
     return ct.solve(read(path, cards, load), threads=1)
 
