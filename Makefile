@@ -6,7 +6,11 @@ RESULTS ?= results
 
 VENV := .venv
 BIN := $(VENV)/bin
+# The environment with what compiles; what Corota runs with; what lint and tests need beside it.
+TOOL := $(VENV)/.stamp-tool
+RUNTIME := $(VENV)/.stamp-runtime
 DEPS := $(VENV)/.stamp-deps
+COMPILED := $(VENV)/.stamp-compiled
 CORE := $(VENV)/.stamp-core
 
 CORE_SOURCES := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -type f 2>/dev/null)
@@ -15,6 +19,8 @@ CARGO := --release --locked
 # The tests run in seconds; optimized, they would build for minutes. Unoptimized frames are large.
 UNOPTIMIZED := --config 'profile.release.package.corota.opt-level=0'
 WITH_PYTHON := --features python,pyo3/extension-module
+# Python compiles the modules that are used when they are imported first.
+INSTALL := $(BIN)/python -m pip install --quiet --no-compile --require-hashes
 AS_MATURIN = $(addprefix PYO3_CONFIG_FILE=$(CURDIR)/,$(lastword $(wildcard target/maturin/pyo3-config-*.txt)))
 
 export VIRTUAL_ENV := $(abspath $(VENV))
@@ -29,22 +35,36 @@ unexport PYTHONDONTWRITEBYTECODE
 help: ## Say what the targets do
 	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' Makefile | awk -F'|' '{printf "make %-12s %s\n", $$1, $$2}'
 
-$(DEPS): requirements.txt requirements-dev.txt
+$(TOOL): requirements-build.txt
 	@PYTHON="$(PYTHON)" scripts/check_toolchain.sh
 	@echo "Setting up the Python environment in $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements.txt -r requirements-dev.txt
+	@$(INSTALL) -r requirements-build.txt
 	@touch $@
 
-$(CORE): $(DEPS) $(CORE_SOURCES)
+$(RUNTIME): $(TOOL) requirements.txt
+	@$(INSTALL) -r requirements.txt
+	@touch $@
+
+$(DEPS): $(RUNTIME) requirements-dev.txt
+	@$(INSTALL) -r requirements-dev.txt
+	@touch $@
+
+$(COMPILED): $(TOOL) $(CORE_SOURCES)
 	@PYTHON="$(PYTHON)" scripts/check_toolchain.sh
 	@echo "Building the compute core (minutes the first time)"
+	@$(BIN)/maturin develop --quiet --skip-install $(CARGO) --jobs $(JOBS)
+	@touch $@
+
+$(CORE): $(COMPILED) $(RUNTIME)
 	@$(BIN)/maturin develop --quiet $(CARGO) --jobs $(JOBS)
 	@touch $@
 
-setup: $(CORE) ## Make the environment and build the compute core
+# Packages are fetched while the core compiles.
+setup: ## Make the environment and build the compute core
+	@$(MAKE) --no-print-directory --jobs 2 $(CORE)
 
-demo: $(CORE) ## Run the compliant gripper: progress, files and a picture
+demo: setup ## Run the compliant gripper: progress, files and a picture
 	@$(BIN)/python examples/gripper/gripper.py --output $(RESULTS)/gripper
 
 test: ## Set up everything and run the tests but for slow ones
@@ -54,30 +74,30 @@ test: ## Set up everything and run the tests but for slow ones
 test-rust: $(DEPS)
 	RUST_MIN_STACK=67108864 cargo test --quiet $(CARGO) $(UNOPTIMIZED) --jobs $(JOBS)
 
-test-python: $(CORE)
+test-python: $(CORE) $(DEPS)
 	$(BIN)/python -m pytest -n $(JOBS)
 
-test-slow: $(CORE) ## Run the slow tests: full products of cases, long examples
+test-slow: $(CORE) $(DEPS) ## Run the slow tests: full products of cases, long examples
 	$(BIN)/python -m pytest -n $(JOBS) -m slow
 
 VIEW := $(VENV)/.stamp-view
 
-$(VIEW): $(CORE) requirements-view.txt
-	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements-view.txt
+$(VIEW): $(CORE) $(DEPS) requirements-view.txt
+	@$(INSTALL) -r requirements-view.txt
 	@touch $@
 
 test-view: $(VIEW) ## Run the tests against VTK, PyVista, xarray, pandas, meshio and ccx2paraview
 	$(BIN)/python -m pytest -n $(JOBS) tests/output tests/interface
 
-test-mesh: $(CORE) ## Install Gmsh and ezdxf, and run the tests of outlines
-	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements-mesh.txt -c requirements.txt
+test-mesh: $(CORE) $(DEPS) ## Install Gmsh and ezdxf, and run the tests of outlines
+	@$(INSTALL) -r requirements-mesh.txt -c requirements.txt
 	$(BIN)/python -m pytest tests/outline
 
-test-optimize: $(CORE) ## Install mmapy, and run the tests of optimization
-	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements-optimize.txt -c requirements.txt
+test-optimize: $(CORE) $(DEPS) ## Install mmapy, and run the tests of optimization
+	@$(INSTALL) -r requirements-optimize.txt -c requirements.txt
 	$(BIN)/python -m pytest tests/gradients/test_optimize.py
 
-test-petsc: $(CORE) ## Install PETSc (Debian 12, as root) and test runs on two processes
+test-petsc: $(CORE) $(DEPS) ## Install PETSc (Debian 12, as root) and test runs on two processes
 	scripts/install_petsc.sh $(abspath $(BIN)/python)
 	$(BIN)/python -m pytest tests/scale tests/contracts/test_petsc.py tests/contracts/test_linear_solvers.py
 
@@ -105,7 +125,7 @@ format: $(DEPS) ## Format both languages
 DOCS := $(VENV)/.stamp-docs
 
 $(DOCS): $(CORE) requirements-docs.txt
-	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements-docs.txt
+	@$(INSTALL) -r requirements-docs.txt
 	@touch $@
 
 docs: $(DOCS) ## Build the site of the documentation into build/site, warnings as errors
@@ -119,7 +139,7 @@ bench: $(CORE) ## Install the peers, run all programs side by side (benchmarks/R
 	$(BIN)/python -m benchmarks.side_by_side
 	$(BIN)/python -m benchmarks.bench_tables
 
-wheel: $(DEPS) ## Build a wheel into dist/ for every Python from 3.10
+wheel: $(TOOL) ## Build a wheel into dist/ for every Python from 3.10
 	@PYTHON="$(PYTHON)" scripts/check_toolchain.sh
 	$(BIN)/maturin build --quiet $(CARGO) --jobs $(JOBS) --out dist
 
@@ -127,7 +147,7 @@ try-wheel: wheel ## Install the wheel where no toolchain is, and solve a deck
 	@PYTHON="$(PYTHON)" scripts/try_wheel.sh
 
 meshes: $(CORE) ## Mesh the examples again (needs Gmsh's Python package)
-	$(BIN)/python -m pip install --quiet --require-hashes -r requirements-mesh.txt
+	$(INSTALL) -r requirements-mesh.txt
 	$(BIN)/python examples/gripper/mesh.py
 
 lock: ## Pin the newest versions of the Python packages again (needs uv)

@@ -41,6 +41,8 @@ ROOT_NAMES = frozenset(
         "notebooks",
         "packaging",
         "pyproject.toml",
+        "requirements-build.in",
+        "requirements-build.txt",
         "requirements-dev.in",
         "requirements-dev.txt",
         "requirements-docs.in",

@@ -12,7 +12,8 @@ pin() {
 }
 
 pin requirements.txt pyproject.toml --extra plot
-pin requirements-dev.txt requirements-dev.in --constraint requirements.txt
+pin requirements-build.txt requirements-build.in
+pin requirements-dev.txt requirements-dev.in --constraint requirements.txt --constraint requirements-build.txt
 pin requirements-mesh.txt requirements-mesh.in
 pin requirements-optimize.txt requirements-optimize.in --constraint requirements.txt
 pin requirements-docs.txt requirements-docs.in --constraint requirements.txt
