@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from benchmarks.contact_case_models import collapse
 from corota.analysis.procedures.stopping import plateau
 from corota.cli import main
 from corota.model.paths import CriticalPoint
@@ -109,6 +110,20 @@ def test_plastic_collapse_is_named_with_its_load(at_limit):
     last = error.value.results.frames[-1].factor
     assert last == pytest.approx(200.0 / 230.0, rel=2e-3)
     assert f"at load factor {last:.6g}" in str(error.value)
+
+
+@pytest.mark.slow
+def test_collapse_is_named_where_all_stiffness_goes_at_once():
+    """A strip over a drum without friction, pulled to twice its yield force of 50.
+
+    Its straight parts yield all at once. Up to there displacements grow 7 times as fast as at
+    first, in the last increments no faster than at first, as nothing flows in so short ones. With
+    flow behind them the tangent has a negative pivot.
+    """
+    model, steps = collapse("Q8R", 60, "node_to_segment")
+    with pytest.raises(ct.ConvergenceError, match="plastic collapse: the limit load") as error:
+        ct.solve(model, steps, threads=1, fields=False)
+    assert error.value.results.frames[-1].factor == pytest.approx(0.5, rel=0.01)
 
 
 def frame_beam(curve=((250.0, 0.0),), end="fixed", n=4):

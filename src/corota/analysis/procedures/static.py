@@ -48,6 +48,7 @@ passed = lazy("corota.analysis.procedures.stopping:passed")
 unstable = lazy("corota.analysis.procedures.stopping:unstable")
 remedies = lazy("corota.analysis.procedures.stopping:remedies")
 path_step = lazy("corota.analysis.procedures.path.arc_length:path_step")
+path_stepper = lazy("corota.analysis.procedures.path.arc_length:PathStepper")
 by_relaxation = lazy("corota.analysis.procedures.static_relaxation:by_relaxation")
 
 #: Failed attempts with increasing negative pivots before a limit point is searched.
@@ -539,7 +540,6 @@ class StaticStepper(NewtonStepper):
             fixed_increments=False,
         )
         before, here = control.number, state.u
-        last, along_path = (control.time / step.period, here), 0.0
         kept = [control.time / step.period]
         resumed = state.resumption
         if resumed is not None:
@@ -557,40 +557,25 @@ class StaticStepper(NewtonStepper):
                 state.notes.append(f"step {number}: {text}")
                 observers.note(number, text)
             kept.append(factor)
-            nonlocal last, along_path
-            # Displacement per unit of time, as of load control.
-            time = abs(factor - last[0]) * step.period
-            moved = float(np.abs(state.u - last[1]).max(initial=0.0))
-            along_path, last = (moved / time if time > 0.0 else np.inf), (factor, state.u.copy())
             save(state, increment, factor, scalars)
 
+        loop = IncrementLoop(system, along, number, state, observers, keep)
+        stepper = path_stepper(loop, control.time / step.period, before)
+        stepper.takes_over, stepper.rates, stepper.stalled = True, self.rates, self.stalled
+        stepper.refused = step.smallest_increment / step.period
         try:
-            limit = path_step(
-                IncrementLoop(system, along, number, state, observers, keep),
-                path,
-                factor=control.time / step.period,
-                increment=before,
-                takes_over=True,
-                rates=self.rates,
-                stalled=self.stalled,
-            )
+            limit = stepper.run(path)
         except (ConvergenceError, SingularError, ModelError) as error:
             if state.u is not here:
                 # The states that the path found are kept: there the step stops.
                 factor = kept[-1]
                 said = str(error).removesuffix(". All converged increments are kept")
-                fails, rates, stalled = "", self.rates, self.stalled
-                if resumed is not None and state.loop is not None:
-                    rates, stalled = state.loop["rates"], state.loop["stalled"]
-                rates = rates[0], max(rates[1], along_path)
-                moves = driven(system, step, state)
-                if not moves:
-                    fails = collapse(system, number, factor, rates, said)
-                way = system.gives_way()
+                moves, way = driven(system, step, state), system.gives_way()
+                fails = "" if moves else collapse(system, number, factor, stepper.rates, said)
                 raise ConvergenceError(
                     f"{fails + '. ' if fails else ''}step {number} stopped at step time "
                     f"{factor * step.period:g} of {step.period:g} (load factor {factor:.6g}): "
-                    f"{way and f'{way}; '}{said}{stalled}{unstable(state)}. All converged "
+                    f"{way and f'{way}; '}{said}{stepper.stalled}{unstable(state)}. All converged "
                     f"increments are kept; to continue, {remedies(moves)}"
                 ) from None
             return False

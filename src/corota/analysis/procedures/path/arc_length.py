@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.failure import ElementFailure
+from corota.analysis.failure import ElementFailure, GiveUp
 from corota.analysis.increment_loop import Accepted
 from corota.analysis.newton import Settings
-from corota.analysis.path_system import Point
+from corota.analysis.path_system import Point, Tangent
 from corota.analysis.procedures.path.branches import BranchTracer
 from corota.analysis.procedures.path.controls import Row
+from corota.analysis.procedures.path.corrector import tangent_at
 from corota.analysis.procedures.path.plan import End, PathStalled, Plan
 from corota.analysis.procedures.stopping import plateau
 from corota.analysis.terms.contact.path import path_system
@@ -40,38 +41,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-def path_step(
-    loop: IncrementLoop,
-    path: ArcLength | DisplacementControl,
-    *,
-    factor: float = 0.0,
-    increment: int = 0,
-    takes_over: bool = False,
-    rates: tuple[float, float] = (0.0, 0.0),
-    stalled: str = "",
-) -> CriticalPoint | None:
-    """Run a step, or the rest of one, along its path.
+def path_step(loop: IncrementLoop, path: ArcLength | DisplacementControl) -> None:
+    """Run a step along its path.
 
     Parameters
     ----------
     loop : IncrementLoop
         Of a static step.
     path : ArcLength or DisplacementControl
-    factor : float
-        Load factor of the committed state.
-    increment : int
-        Increments of the step so far.
-    takes_over : bool
-        Whether the step began by load control: its time then stays within the period.
-    rates : tuple of float
-        Displacement per time of load control before, for messages.
-    stalled : str
-        Where and why load control stalled, for messages.
-
-    Returns
-    -------
-    CriticalPoint or None
-        The limit point at which the path ends, if requested.
 
     Raises
     ------
@@ -81,10 +58,7 @@ def path_step(
         If the step's loads do not grow with a load factor, or none does.
     """
     loop.system.conditions.check_proportional()
-    stepper = PathStepper(loop, factor, increment)
-    stepper.takes_over = takes_over
-    stepper.rates, stepper.stalled = rates, stalled
-    return stepper.run(path)
+    PathStepper(loop).run(path)
 
 
 class PathStepper:
@@ -98,12 +72,24 @@ class PathStepper:
         Load factor of the committed state.
     increment : int
         Increments of the step so far.
+
+    Attributes
+    ----------
+    takes_over : bool
+        Whether the step began by load control: its time then stays within the period.
+    rates : tuple of float
+        Displacement per time in the first increment of load control, and in its last or behind the
+        end of the path, for messages.
+    stalled : str
+        Where and why load control stalled, for messages.
+    refused : float
+        Load that load control could not add [load factor].
     """
 
     kind = "path"
     advice = "allow more, or define another end of the path"
 
-    def __init__(self, loop: IncrementLoop, factor: float, increment: int) -> None:
+    def __init__(self, loop: IncrementLoop, factor: float = 0.0, increment: int = 0) -> None:
         self.loop, self.system, self.state = loop, loop.system, loop.state
         system, state = loop.system, loop.state
         assert isinstance(loop.step, Static)
@@ -116,12 +102,20 @@ class PathStepper:
         self.along = path_system(system, state.notes)
         #: The critical point that was found last, as the path and as results know it.
         self.located: tuple[Critical, CriticalPoint] | None = None
-        self.rates, self.stalled = (0.0, 0.0), ""
+        self.rates, self.stalled, self.refused = (0.0, 0.0), "", 0.0
         self.follower: BranchTracer
         self.limit: CriticalPoint | None = None
 
     def run(self, path: ArcLength | DisplacementControl) -> CriticalPoint | None:
-        """Follow the path to its end."""
+        """Follow the path to its end; returns the limit point at which it ends, if requested.
+
+        Raises
+        ------
+        ConvergenceError
+            With the reason, when the path cannot be followed further.
+        ModelError
+            If nothing in the step grows with the load factor.
+        """
         system, state, period = self.system, self.state, self.step.period
         self.stop_at_limit = bool(getattr(path, "stop_at_limit", False))
         if state.resumes:
@@ -131,6 +125,7 @@ class PathStepper:
         try:
             self.loop.run(self)
         except PathStalled as stalled:
+            self.rates = self.rates[0], max(self.rates[1], self._rate_behind())
             raise ConvergenceError(
                 f"{self.stopped}: {stalled}. All converged increments are kept"
             ) from None
@@ -149,6 +144,32 @@ class PathStepper:
             except ElementFailure as error:
                 raise ConvergenceError(f"{self.stopped}: {error}") from None
         return self.limit
+
+    def _rate_behind(self) -> float:
+        """Displacement per time behind the end of the path, with the flow of a little more load.
+
+        It is infinite where this flow takes the stability of the tangent: that is the limit load.
+        The last point itself may have the tangent without flow, after increments as short as
+        rounding.
+        """
+        way, base, period = self.follower.tangent, self.follower.base, self.step.period
+        rate = _rate(way, self.system.n_dofs)
+        if way.factor > 0.0 and self.refused:
+            u = base.u + self.refused / way.factor * way.u
+            behind = Point(u, base.factor + self.refused, None)
+            flows = False
+            try:
+                self.along.restart()
+                behind.at = self.along.evaluate(u, behind.factor * period)
+                flows = self.system.elements.plastic_increment() > 0.0
+                tangent, _ = tangent_at(self.along, behind)
+                limit = flows and tangent.negative > max(self.state.negative, 0)
+                rate = np.inf if limit else max(rate, _rate(tangent, self.system.n_dofs))
+            except SingularError:
+                rate = np.inf if flows else rate
+            except (ElementFailure, GiveUp):
+                pass  # the tangent of the last point is all there is
+        return rate / period
 
     def _start(self) -> Point:
         """The committed state as the start of the path."""
@@ -379,4 +400,10 @@ class PathStepper:
         return Row(np.array(dofs), np.array(weights), 0.0)
 
 
-__all__ = ["path_step"]
+def _rate(tangent: Tangent, n_dofs: int) -> float:
+    """Largest displacement per load factor along a path."""
+    moved = float(np.abs(tangent.u[:n_dofs]).max())
+    return moved / abs(tangent.factor) if tangent.factor else np.inf
+
+
+__all__ = ["PathStepper", "path_step"]
