@@ -13,7 +13,7 @@ wheel=$(ls -t dist/corota-*.whl | head -n 1)
 alone() { env -i HOME="$place" PATH="$place/venv/bin" "$@"; }
 pip() { PIP_DISABLE_PIP_VERSION_CHECK=1 "$place/venv/bin/python" -m pip "$@"; }
 
-pip install --quiet --only-binary :all: --require-hashes -r requirements.txt
+pip install --quiet --no-compile --only-binary :all: --require-hashes -r requirements.txt
 pip install --quiet --no-deps --no-index "$wheel"
 for tool in cargo rustc cc gcc clang; do
     if alone "$place/venv/bin/python" -c "import shutil, sys; sys.exit(shutil.which('$tool') is None)"
