@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import CLOSED, COMPLIANCE, HALVINGS, OPEN, SLIPPING
+from corota.analysis.terms.contact.gaps import CHANGES, CLOSED, COMPLIANCE, HALVINGS, OPEN, SLIPPING
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -107,9 +107,8 @@ def _leaving(
     return int(tied[np.argmax(column[tied])])
 
 
-#: Limits of iterations in explicit steps: Newton's method on the set, and sweeps of Gauss and
-#: Seidel behind it.
-CHANGES, SWEEPS = 30, 5000
+#: Limit of the sweeps of Gauss and Seidel in an explicit step.
+SWEEPS = 5000
 #: Rounding bound of explicit steps: relative change of a force, or error of a law.
 ROUNDING = 1e-12
 

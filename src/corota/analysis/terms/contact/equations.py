@@ -34,13 +34,12 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
 
-#: Limit of iterations: those of Newton's method that contact may take besides.
-MAX_EXTRA_CONTACT_ITERATIONS = 24
 #: Complementarity tolerance from which only digits are missing: states that do not change any more
 #: are those of the end, and a position on the way is reached.
 SETTLED = 1e-6
 #: Search radius: displacement of an increment found by pivoting, relative to its first correction,
-#: beyond which it counts as a jump to another equilibrium; driven by supports, and by forces.
+#: beyond which it counts as a jump to another equilibrium; driven by supports, and by forces, under
+#: which it would pass a limit point unseen.
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
 
 
@@ -244,4 +243,4 @@ class ContactEquations(ContactProblem):
         return explanation(self, at)
 
 
-__all__ = ["MAX_EXTRA_CONTACT_ITERATIONS", "SETTLED", "ContactEquations"]
+__all__ = ["SETTLED", "ContactEquations"]

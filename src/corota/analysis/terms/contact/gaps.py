@@ -30,6 +30,9 @@ WAITED = 3
 #: Tries without progress, or returns of a set of states, before an increment is cut: few that take
 #: more converge.
 PATIENCE = 8
+#: Limit of iterations on the set of states: those that contact may take besides Newton's method,
+#: and those of an explicit step before sweeps.
+CHANGES = 24
 
 
 @dataclass

@@ -110,7 +110,7 @@ def _first_contact(term: ContactTerm, contact_state: ContactState, meets: bool) 
 #: edges].
 BEYOND = 1e-4
 #: Gap from which an increment leaves a remainder [slave edges], and the fraction left.
-WIDE, LEFT = 0.1, 0.05
+LEFT = 0.1
 
 
 class Approach:
@@ -226,7 +226,7 @@ def _time_to_contact(
         return -np.bincount(terms.constraint, part, pair.n) / area
 
     speed, growth = rate(rates), rate(acceleration)
-    wide = gap > WIDE * edge
+    wide = gap > LEFT * edge
     way = np.where(wide, (1.0 - LEFT) * gap, gap + BEYOND * edge)
     # Schemes that close gaps at the end of an increment may start with such small gaps.
     least = pair.noise if pair.start is not None else BEYOND * edge

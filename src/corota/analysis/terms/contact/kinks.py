@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Share of a difference of contact forces that a jump must have (a gradual change halves with the
-#: way).
-JUMP = 0.25
+#: Share that tells a jump from a gradual change: of a difference of contact forces, which halves
+#: with the way if it is gradual, and of a correction, which the next one takes back at a jump.
+JUMP = 0.2
 #: Search radius of a kink in the next iterations, in distances between its sides.
 WIDTH = 4.0
 #: Search radii before that one, in distances that the last correction was to go: nearer jumps come
@@ -208,9 +208,6 @@ def _kink(
 #: Jumps beyond the forces of both sides in which an equilibrium is searched: farther, the bodies do
 #: not rest there.
 OUTSIDE = 2.0
-#: Test of a cycle of two iterates: remainder of two corrections that cancel each other, relative to
-#: the last one.
-TO_AND_FRO = 0.2
 
 
 def keeps_kink(problem: ContactProblem, at: Evaluation) -> bool:
@@ -248,7 +245,7 @@ def _to_and_fro(places: list[Floats]) -> bool:
     if len(places) < 3:
         return False
     first, before, here = places
-    return float(np.abs(here - first).max()) <= TO_AND_FRO * float(np.abs(here - before).max())
+    return float(np.abs(here - first).max()) <= JUMP * float(np.abs(here - before).max())
 
 
 def along_kink(

@@ -27,11 +27,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Message alone: part of the force of a pair from which a node carries it alone, and of its
-#: friction bound from which friction is used up.
+#: Message alone: part that counts as the whole: of the force of a pair that a node carries alone,
+#: of a friction bound that is used up, of an area.
 WHOLE = 0.99
-#: And part of it beyond which equilibrium needs more than friction gives.
-EXCEEDS = 1.001
 
 
 def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
@@ -92,7 +90,7 @@ def _overcome(problem: ContactProblem, at: Evaluation) -> str:
         if pair.rubs and bound > 0.0:
             used[pair.name] = abs(float((q * terms.area).sum())) / bound
     name = max(used, key=lambda name: used[name], default="")
-    if name and (used[name] > EXCEEDS or min(used.values()) > WHOLE):
+    if name and (WHOLE * used[name] > 1.0 or min(used.values()) > WHOLE):
         return (
             f"friction of contact pair {name!r} does not hold the bodies from the start: they slide"
         )
@@ -125,25 +123,15 @@ def gives_way(contact_term: ContactTerm) -> str:
         )
         at_node = np.bincount(nodes, force)
         node = int(np.argmax(at_node))
-        if at_node[node] > WHOLE * total and _corners(contact_term)[node]:
-            label = contact_term.system.model.mesh.node_labels[node]
+        mesh = contact_term.system.model.mesh
+        edges = mesh.edge_nodes(mesh.boundary_edges())
+        ends = np.array([nodes[:2] for nodes in edges], np.int64)
+        if at_node[node] > WHOLE * total and node in sharp_corners(mesh.points, ends):
             return (
-                f"contact pair {pair.name!r} presses at corner {label} alone: a body that it alone "
-                "holds tips about it"
+                f"contact pair {pair.name!r} presses at corner {mesh.node_labels[node]} alone: "
+                "a body that it alone holds tips about it"
             )
     return ""
-
-
-def _corners(contact_term: ContactTerm) -> NDArray[np.bool_]:
-    """Whether the boundary of a body turns sharply at a node, shape (n_nodes,)."""
-    mesh = contact_term.system.model.mesh
-    ends = np.array([nodes[:2] for nodes in mesh.edge_nodes(mesh.boundary_edges())], np.int64)
-    along = mesh.points[ends[:, 1]] - mesh.points[ends[:, 0]]
-    comes, goes = np.zeros((mesh.n_nodes, 2)), np.zeros((mesh.n_nodes, 2))
-    comes[ends[:, 1]], goes[ends[:, 0]] = along, along
-    cross = comes[:, 0] * goes[:, 1] - comes[:, 1] * goes[:, 0]
-    found: NDArray[np.bool_] = np.arctan2(cross, (comes * goes).sum(axis=1)) > CORNER
-    return found
 
 
 #: Notes alone: slave edges that a round corner should measure along its radius, its least turn,
@@ -237,10 +225,6 @@ def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
     )
 
 
-#: Note alone: error of the area under a pressure law from which it is reported, relative to it.
-WRONG_AREA = 0.01
-
-
 def partly_covered_note(pair: Pair, area: Floats, x: Floats, labels: Ints) -> str:
     """A remark on slave nodes at the ends of a master under a pressure law, or ''.
 
@@ -277,7 +261,7 @@ def partly_covered_note(pair: Pair, area: Floats, x: Floats, labels: Ints) -> st
         excess += (taken - float(part[np.argmin(off)])) * length * depth
         named.append(str(labels[a]))
     exact = float(area[: pair.of_nodes][seen[: pair.of_nodes]].sum()) - excess
-    if abs(excess) <= WRONG_AREA * exact:
+    if abs(excess) <= (1.0 - WHOLE) * exact:
         return ""
     return (
         f"contact pair {pair.name!r}: the master ends within slave edges (node "
@@ -301,9 +285,9 @@ def _ends(pair: Pair, x: Floats) -> Floats:
     return alone
 
 
-#: Note alone: depth from which a penetration is reported, and beyond which it is on the far side of
-#: a body [edges].
-NAMED, FAR = 0.1, 2.0
+#: Note alone: depth from which a penetration is reported [edges]; beyond `EDGES` it is on the far
+#: side of a body.
+NAMED = 0.1
 
 
 def sunk_corner(system: System) -> str:
@@ -320,7 +304,7 @@ def sunk_corner(system: System) -> str:
             continue
         for corner in sharp_corners(x, pair.master.nodes[:, :2]):
             depth, ends = _depth(x, pair, corner)
-            if worst < depth < FAR:
+            if worst < depth < EDGES:
                 label = contact_term.system.model.mesh.node_labels
                 worst = depth
                 said = (

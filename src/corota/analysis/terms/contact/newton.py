@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from corota.analysis.failure import ElementFailure
 from corota.analysis.newton import newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.gaps import PATIENCE
+from corota.analysis.terms.contact.gaps import CHANGES, PATIENCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,33 +23,13 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import Outcome, ResidualNorms, Settings
+    from corota.analysis.terms.contact.equations import ContactEquations
 
     Floats = NDArray[np.float64]
 
 
-class ContactIncrement(Protocol):
-    """Contact results of a solved increment for a procedure."""
-
-    @property
-    def force(self) -> Floats:
-        """Of contact on the nodes at the end, shape (n_dofs,)."""
-        ...
-
-    def accept(self, u: Floats, step_time: float) -> list[str]:
-        """Commit contact with the increment; returns remarks that are new."""
-        ...
-
-    def near(self, u: Floats) -> bool:
-        """Whether an equilibrium is near the committed one."""
-        ...
-
-    def impact_error(self, moved: Floats, energy: float, tolerance: float, meets: bool) -> float:
-        """Error of an increment in the instant of impact."""
-        ...
-
-
 class NoContact:
-    """An increment of a model without pairs and ties.
+    """An increment of a model without pairs and ties, as one with (`ContactEquations`).
 
     Parameters
     ----------
@@ -63,13 +43,14 @@ class NoContact:
         """Nothing to commit."""
         return []
 
-    def near(self, u: Floats) -> bool:
-        """Without contact, states do not jump."""
-        return True
-
     def impact_error(self, moved: Floats, energy: float, tolerance: float, meets: bool) -> float:
         """No contact, no impact."""
         return 0.0
+
+
+if TYPE_CHECKING:
+    #: Contact results of a solved increment for a procedure.
+    ContactIncrement = ContactEquations | NoContact
 
 
 def solve_increment(
@@ -109,10 +90,7 @@ def solve_increment(
         begin = None if known is None else system.with_loads(known, u, step_time)
         outcome = newton(system, u, prescribed, step_time, settings, begin, report, rule)
         return outcome, NoContact(system.n_dofs)
-    from corota.analysis.terms.contact.equations import (
-        MAX_EXTRA_CONTACT_ITERATIONS,
-        ContactEquations,
-    )
+    from corota.analysis.terms.contact.equations import ContactEquations
     from corota.analysis.terms.contact.output import pressures
 
     problem = ContactEquations(system, rule)
@@ -120,7 +98,7 @@ def solve_increment(
     n = system.n_dofs
     z = problem.start(u)
     target = np.concatenate([prescribed, z[n:]])
-    most = settings.max_iterations + MAX_EXTRA_CONTACT_ITERATIONS
+    most = settings.max_iterations + CHANGES
     patience = 0 if last_chance else PATIENCE
     more = replace(settings, max_iterations=most, patience=patience, reuse=None)
     start = None
@@ -150,4 +128,4 @@ def solve_increment(
     return problem.settle(found), problem
 
 
-__all__ = ["ContactIncrement", "NoContact", "solve_increment"]
+__all__ = ["NoContact", "solve_increment"]

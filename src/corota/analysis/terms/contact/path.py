@@ -22,8 +22,8 @@ import numpy as np
 
 from corota.analysis.path_system import NOT_CONSERVATIVE, Metric, Point, SmoothPath, Tangent
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.equations import MAX_EXTRA_CONTACT_ITERATIONS, ContactEquations
-from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, SLIPPING, covered
+from corota.analysis.terms.contact.equations import ContactEquations
+from corota.analysis.terms.contact.gaps import CHANGES, CLOSED, OPEN, SAME, SLIPPING, covered
 from corota.analysis.terms.contact.problem import RightHandSides
 from corota.errors import ModelError, SingularError
 
@@ -55,7 +55,7 @@ class ContactPathEquations(ContactEquations):
         If an overlap is to be ramped along the path.
     """
 
-    more_iterations = MAX_EXTRA_CONTACT_ITERATIONS
+    more_iterations = CHANGES
     #: By the control of the path.
     bounded = True
 

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.complementarity import lemke
-from corota.analysis.terms.contact.gaps import covered
+from corota.analysis.terms.contact.gaps import SAME, covered
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.errors import SingularError
 
@@ -37,9 +37,9 @@ if TYPE_CHECKING:
     #: Correction of dofs and multipliers, its states, signs of slipping tractions.
     Found = tuple[Floats, States, list[Floats]]
 
-#: Size of the linear complementarity problem: most constraints (its cost grows with the cube), and
-#: the open ones in it from the start.
-MOST, OPEN_ONES = 160, 16
+#: Size of the linear complementarity problem: most constraints (its cost grows with the cube); a
+#: tenth of them may be open ones from the start.
+MOST = 160
 
 
 @dataclass
@@ -118,7 +118,7 @@ class Pivoting:
         for k, (pair, terms, _) in enumerate(self.pairs):
             able = self._able(k)
             gap = np.where(able & (base[k] == OPEN), terms.gap * pair.stiffness, np.inf)
-            near = np.argsort(gap, kind="stable")[:OPEN_ONES]
+            near = np.argsort(gap, kind="stable")[: MOST // 10]
             mask = able & (base[k] != OPEN)
             mask[near[np.isfinite(gap[near])]] = True
             wanted.append(mask)
@@ -148,7 +148,7 @@ class Pivoting:
                     mask[c.rows] = True
             p1 = p + z[n + pair.first : n + pair.first + pair.n]
             gap = terms.gap + moves[k][0]
-            small = 1e-9 * max(float(np.abs(p1 * terms.area).max(initial=0.0)), _small(problem))
+            small = SAME * max(float(np.abs(p1 * terms.area).max(initial=0.0)), _small(problem))
             bad = (states[k] == OPEN) & (gap * pair.stiffness < -small)
             bad |= (states[k] != OPEN) & (p1 * terms.area < -small)
             if pair.rubs:
@@ -405,7 +405,7 @@ def pivoted(problem: ContactProblem, at: Evaluation, right_sides: RightHandSides
 def _small(problem: ContactProblem) -> float:
     """Force that counts as zero."""
     scales = problem.system.scales
-    return 1e-9 * max(scales.force, scales.zero_force)
+    return SAME * max(scales.force, scales.zero_force)
 
 
 def responses(

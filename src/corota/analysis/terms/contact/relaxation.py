@@ -36,13 +36,10 @@ from corota.analysis.energies import Energies
 from corota.analysis.failure import ElementFailure
 from corota.analysis.newton import Outcome, newton
 from corota.analysis.rule import REST, Rule
-from corota.analysis.terms.contact.equations import (
-    MAX_EXTRA_CONTACT_ITERATIONS,
-    SETTLED,
-    ContactEquations,
-)
+from corota.analysis.terms.contact.equations import SETTLED, ContactEquations
 from corota.analysis.terms.contact.forward import ForwardContact
-from corota.analysis.terms.contact.gaps import PATIENCE
+from corota.analysis.terms.contact.gaps import CHANGES, PATIENCE, SAME
+from corota.analysis.terms.contact.tunneling import UNSEEN
 from corota.errors import ConvergenceError, SingularError
 
 if TYPE_CHECKING:
@@ -59,13 +56,12 @@ if TYPE_CHECKING:
 
 #: Limit of corrections in a relaxation.
 MOST = 400
-#: Proximal point method: stiffness of the springs per stiffness of their nodes: first, at most, at
-#: least.
-FIRST, LARGEST, LEAST = 1e-2, 1e2, 1e-6
-#: Factors on this stiffness after a position was reached, and where none was.
+#: Proximal point method: first stiffness of the springs per stiffness of their nodes. The largest
+#: is its inverse; the least, `SETTLED`, has forces within the tolerance of a position.
+FIRST = 1e-2
+#: Factors on this stiffness after a position was reached, and where none was. The mass of a damped
+#: motion grows by the inverse of the first where an element fails.
 EASED, TIGHTENED = 0.25, 8.0
-#: Search radius: largest distance between positions, in shortest edges of a slave surface.
-FARTHEST = 0.5
 
 
 def relax(
@@ -114,7 +110,7 @@ class _Creep:
         self.problem = ContactEquations(system, rule)
         self.z = self.problem.start(u)
         self.left = prescribed - u  # that supports still have to move
-        most = settings.max_iterations + MAX_EXTRA_CONTACT_ITERATIONS
+        most = settings.max_iterations + CHANGES
         self.last = replace(settings, max_iterations=most, patience=PATIENCE, reuse=None)
         tolerance = max(SETTLED, settings.tolerance)
         self.each = replace(self.last, tolerance=tolerance)
@@ -125,7 +121,7 @@ class _Creep:
         self.moved = False
         edges = [float(p.slave.length.min()) for p in self.problem.term.pairs]
         self.edge = min(edges)
-        self.farthest = FARTHEST * self.edge
+        self.farthest = UNSEEN * self.edge
         self.stiffness = self.problem.term.nodal
 
     def run(self, motion: bool) -> Outcome:
@@ -135,7 +131,7 @@ class _Creep:
             if out.converged or not self.moved:
                 return out
         share, tries = FIRST, 0
-        while self.corrections < MOST and share <= LARGEST:
+        while self.corrections < MOST and share <= 1.0 / FIRST:
             out = self._place(share)
             moved = self._largest(out.u - self.z)
             if out.converged and out.at is not None:
@@ -147,14 +143,14 @@ class _Creep:
                 break
             self.z, self.left = out.u, np.zeros_like(self.left)
             share *= EASED
-            if share >= LEAST:
+            if share >= SETTLED:
                 continue
             out = self._place(0.0)
             if out.converged and self._leaves(out.u):
                 break
             if out.converged:
                 return self._found(out)
-            share, tries = LEAST * TIGHTENED**2, tries + 1
+            share, tries = SETTLED * TIGHTENED**2, tries + 1
             if tries > 2:
                 break
         return self._missed(out)
@@ -251,13 +247,11 @@ AT_REST = 1e-4
 UPDATE = 50
 #: Stability of central differences: mass over the least one by Gershgorin's bound.
 SAFETY = 2.0
-#: Rounding bound: smallest mass over the largest one, for dofs without stiffness.
-LEAST_MASS = 1e-6
 #: Fraction of an overlap that remains after an increment: all of it, as in central differences, or
 #: less. A gap that jumps back and forth has no position of rest if the overlap is removed.
 REMAINS = (1.0, 0.95)
-#: Factor on the mass where an element fails, and the largest one before the motion is given up.
-HEAVIER, HEAVIEST = 4.0, 1e3
+#: Largest growth of the mass before the motion is given up.
+HEAVIEST = 1e3
 #: Longest displacement of supports in an increment, in shortest edges of a slave surface.
 LONGEST_STEP = 0.02
 
@@ -346,7 +340,7 @@ def come_to_rest(
             force = contact.act(u, v, free, before, 1.0, inverse, step_time)
         except ElementFailure:
             # The motion was too fast: it goes on from rest where it came from, with more mass.
-            heavier, mass = HEAVIER * heavier, HEAVIER * mass
+            heavier, mass = heavier / EASED, mass / EASED
             if heavier > HEAVIEST:
                 return None
             u, v, kinetic = np.where(held, u, u - v), np.where(held, v, 0.0), 0.0
@@ -375,7 +369,7 @@ def _stable_mass(system: System, values: Floats) -> Floats:
     The largest eigenvalue of M^-1 K is at most the largest sum of a row, over the mass of the row.
     """
     rows: Floats = system.pattern.multiply(np.abs(values), np.ones(system.n_dofs))
-    out: Floats = 0.25 * SAFETY * np.maximum(rows, LEAST_MASS * rows.max())
+    out: Floats = 0.25 * SAFETY * np.maximum(rows, SAME * rows.max())
     return out
 
 

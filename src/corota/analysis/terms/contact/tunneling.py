@@ -27,17 +27,16 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 #: Search radius: fraction of the reach, and of the width of a body, that a node may move without
-#: this check.
+#: this check; in relaxation, fraction of the shortest slave edge from a position to the next.
 UNSEEN = 0.5
 #: Complementarity tolerance: depth over the reach up to which a node touches: a rest of Newton's
 #: method, as where a node of the other side carries both.
 TOUCHES = 1e-8
-#: Rotation of a side in an increment [rad] up to which its ways count as straight.
-TURNS = 0.2
+#: Angle up to which an arc counts as straight: the way of a side that turns in an increment, and a
+#: piece of a rigid curve [rad].
+STRAIGHT = 0.1
 #: Nodes times pieces that are compared at once (memory alone).
 AT_ONCE = 1_000_000
-#: Angle of the chords of arcs in this check [rad].
-CHORD = math.radians(4.0)
 
 
 def passed(
@@ -78,7 +77,7 @@ def passed(
     # Bodies that turn together go along arcs: who passes goes through seen from either of them.
     sides = (old[nodes, :2], new[nodes, :2]), (first.reshape(-1, 2), last.reshape(-1, 2))
     turns = [_turn(*side) for side in sides]
-    common = abs(_turn_between(*turns)) <= TURNS < abs(turns[0])
+    common = abs(_turn_between(*turns)) <= STRAIGHT < abs(turns[0])
     for turn in sorted(set(turns)) if common else [0.0]:
         c, s = math.cos(turn), math.sin(turn)
         back = np.array([[c, -s], [s, c]])
@@ -182,7 +181,7 @@ def _chords(curve: RigidCurve) -> Floats:
             out.append([[x0, y0], [x1, y1]])
             continue
         radius, start = math.hypot(x0 - cx, y0 - cy), math.atan2(y0 - cy, x0 - cx)
-        angle = start + np.linspace(0.0, sweep, 1 + math.ceil(abs(sweep) / CHORD))
+        angle = start + np.linspace(0.0, sweep, 1 + math.ceil(abs(sweep) / STRAIGHT))
         points = np.column_stack([cx + radius * np.cos(angle), cy + radius * np.sin(angle)])
         out += np.stack([points[:-1], points[1:]], axis=1).tolist()
     return np.array(out)
