@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
 
 
 class LoadHistory:
@@ -67,7 +68,7 @@ class LoadHistory:
         self.removed[:] = True
 
     def set(
-        self, where: NDArray[np.int64 | np.bool_], value: Floats | float, amplitude: int
+        self, where: NDArray[np.int64 | np.bool_], value: Floats | float, amplitude: Ints | int
     ) -> None:
         """Give new numbers."""
         self.end[where] = value

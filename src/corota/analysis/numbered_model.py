@@ -155,8 +155,8 @@ class NumberedModel:
 
     # -- numbering ---------------------------------------------------------------------
 
-    def dofs(self, nodes: Ints, dof: int) -> Ints:
-        """Dof numbers of nodes, -1 where a node has no such dof."""
+    def dofs(self, nodes: Ints, dof: int | Ints) -> Ints:
+        """Dof numbers of nodes, of each the same or its own; -1 where a node has no such dof."""
         nodes = np.asarray(nodes, np.int64)
         return np.where(self.per_node[nodes] > dof, self.start[nodes] + dof, -1)
 

@@ -146,8 +146,7 @@ class Conditions(Term):
         model = self.system.model
         with_model = first or step.new_supports
         for supports in (model.supports if with_model else [], step.supports):
-            self.supports.refuse_conflicts(supports)
-            self.supports.add(supports)
+            self.supports.add(supports, once=True)
         if step.procedure in PERTURBATION or harmonic:
             # Perturbation loads are not among the loads that later steps start from.
             self.end_time = 0.0

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from corota.model.loads import Fixed
 
     Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
 
 
 class Supports:
@@ -69,43 +70,69 @@ class Supports:
             dofs = self.system.dofs(nodes, dof)
             self.constrained[dofs[dofs >= 0]] = True
 
-    def add(self, items: Iterable[Fixed]) -> None:
+    def add(self, items: Iterable[Fixed], once: bool = False) -> None:
         """Add supports.
+
+        Parameters
+        ----------
+        items : iterable of Fixed
+        once : bool
+            Refuse a dof that is given two values; the same one twice is one. Of decks the later
+            value counts, with a note.
 
         Raises
         ------
         ModelError
-            If a node has no such dof, a constraint determines it, or there is nothing to release.
+            If a node has no such dof, a constraint determines it, there is nothing to release, or
+            there are two values: naming the node, the direction and both.
         """
-        for _, group in groupby(items, key=lambda item: item.place if item.free else ""):
+        items = list(items)
+        check_supports(items)
+        nodes = [self.system.model.mesh.node_indices(item.nodes) for item in items]
+        if once:
+            self._refuse_conflicts(items, nodes)
+        runs = groupby(range(len(items)), lambda k: items[k].place if items[k].free else "")
+        for _, group in runs:
             run = list(group)
-            if run[0].free:
-                self._release(run)
+            first, end = run[0], run[-1] + 1
+            if items[first].free:
+                self._release(items[first:end])
             else:
-                self._fix(run)
+                self._fix(items[first:end], nodes[first:end])
 
-    def _fix(self, items: list[Fixed]) -> None:
+    def _dofs(self, items: list[Fixed], nodes: list[Ints]) -> tuple[Ints, Ints, Ints]:
+        """Number of the support, node and dof, -1 for none, of all nodes of some supports."""
+        number = np.repeat(np.arange(len(items)), [len(some) for some in nodes])
+        every = np.concatenate(nodes)
+        return number, every, self.system.dofs(every, np.array([i.dof for i in items])[number])
+
+    def _fix(self, items: list[Fixed], nodes: list[Ints]) -> None:
         self.acting += items
-        for item in items:
-            nodes = self.system.model.mesh.node_indices(item.nodes)
-            dofs = self.system.dofs(nodes, item.dof)
+        number, every, dofs = self._dofs(items, nodes)
+        for k in np.unique(number[dofs < 0]).tolist():
+            item, missing = items[k], (number == k) & (dofs < 0)
             # A rotation may be given for nodes without one, as with dofs 1-6 in decks.
-            if item.dof == 2 and item.value != 0.0 and (dofs < 0).any():
-                label = self.system.model.mesh.node_labels[nodes[dofs < 0][0]]
+            if item.dof == 2 and item.value != 0.0:
+                label = self.system.model.mesh.node_labels[every[missing][0]]
                 raise ModelError(
                     f"node {label} has no drilling rotation to prescribe; use OPT or Q4D there",
                     item.where,
                 )
-            if item.dof == 2 and item.where is None and (dofs < 0).all():
+            if item.dof == 2 and item.where is None and missing.sum() == len(nodes[k]):
                 from corota.model.rotations import without_rotation
 
                 self.notes.append(without_rotation(self.system.model.mesh, item))
-            self._refuse_off_axis(item, dofs)
-            dofs = dofs[dofs >= 0]
-            self.system.constraints.refuse_constrained(dofs, item.where)
-            self.constrained[dofs] = True
-            value = self.history.begin[dofs] if item.keep else item.value
-            self.history.set(dofs, value, self.factors.index(item.amplitude, item.where))
+        number, dofs = number[dofs >= 0], dofs[dofs >= 0]
+        for k in np.unique(number[self.system.constraints.place[dofs] >= 0]).tolist():
+            self.system.constraints.refuse_constrained(dofs[number == k], items[k].where)
+        if self.system.guided:
+            for k, item in enumerate(items):
+                self._refuse_off_axis(item, dofs[number == k])
+        value = np.array([item.value for item in items])[number]
+        keep = np.array([item.keep for item in items])[number]
+        index = np.array([self.factors.index(item.amplitude, item.where) for item in items])
+        self.constrained[dofs] = True
+        self.history.set(dofs, np.where(keep, self.history.begin[dofs], value), index[number])
 
     def hold(self, dofs: NDArray[np.bool_], u: Floats) -> None:
         """Let dofs stay at a displacement, shape (n_dofs,)."""
@@ -154,23 +181,19 @@ class Supports:
                     item.where,
                 )
 
-    def refuse_conflicts(self, items: list[Fixed]) -> None:
-        """Refuse a dof that is given two values at once; the same one twice is one.
-
-        Of decks the later value counts, with a note.
-
-        Raises
-        ------
-        ModelError
-            Naming the node, the direction and both values.
-        """
-        check_supports(items)
+    def _refuse_conflicts(self, items: list[Fixed], nodes: list[Ints]) -> None:
+        """Refuse a dof that is given two values at once."""
+        if not items:
+            return
+        dofs = self._dofs(items, nodes)[2]
+        dofs = np.sort(dofs[dofs >= 0])
+        if (dofs[1:] != dofs[:-1]).all():
+            return
         n = self.system.n_dofs
         value, amplitude, given = np.zeros(n), np.zeros(n, np.int64), np.zeros(n, bool)
-        for item in items:
-            nodes = self.system.model.mesh.node_indices(item.nodes)
-            dofs = self.system.dofs(nodes, item.dof)
-            nodes, dofs = nodes[dofs >= 0], dofs[dofs >= 0]
+        for item, places in zip(items, nodes, strict=True):
+            dofs = self.system.dofs(places, item.dof)
+            places, dofs = places[dofs >= 0], dofs[dofs >= 0]
             if item.free:
                 given[dofs] = False
                 continue
@@ -179,7 +202,7 @@ class Supports:
             twice = given_before & ((value[dofs] != item.value) | (amplitude[dofs] != index))
             if twice.any():
                 at = int(np.flatnonzero(twice)[0])
-                label = self.system.model.mesh.node_labels[nodes[at]]
+                label = self.system.model.mesh.node_labels[places[at]]
                 name = list(DOFS)[item.dof]
                 other, own = value[dofs[at]], item.value
                 what = f"two values, {other:g} and {own:g}" if other != own else "two amplitudes"
