@@ -151,11 +151,13 @@ class Mesh(Brief):
         edges : array_like of int, shape (n, 2)
             Pairs of global cell index and local edge.
         """
-        found = []
-        for cell, side in np.asarray(edges, dtype=np.int64):
-            block, row = self.locate(int(cell))
+        edges = np.asarray(edges, dtype=np.int64).reshape(-1, 2)
+        offsets, found = self.offsets, []
+        blocks = np.searchsorted(offsets, edges[:, 0], side="right") - 1
+        rows = edges[:, 0] - offsets[blocks]
+        for block, row, side in zip(blocks, rows, edges[:, 1].tolist(), strict=True):
             cells = self.cells[block]
-            found.append(cells.nodes[row, list(SIDES[cells.kind][int(side)])])
+            found.append(cells.nodes[row, list(SIDES[cells.kind][side])])
         return found
 
     def are_lines(self, cells: Ints) -> NDArray[np.bool_]:

@@ -105,12 +105,11 @@ def carrier(system: NumberedModel, side: Surface | None) -> int | None:
     if side is None:
         return None
     mesh = system.model.mesh
-    part = part_of_nodes(mesh)
-    own = part[side.node_list[0]]
     for item in system.model.constraints:
         if isinstance(item, Coupling) and item.kind == "kinematic":
-            joined = part[mesh.node_indices(item.nodes)]
-            if own >= 0 and (joined == own).any():
+            part = part_of_nodes(mesh)
+            own = part[side.node_list[0]]
+            if own >= 0 and (part[mesh.node_indices(item.nodes)] == own).any():
                 return item.reference
     return None
 
