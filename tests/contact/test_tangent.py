@@ -69,7 +69,7 @@ def test_rows_and_columns_are_derivatives(method, law):
         up, down = equations(z + STEP * dz), equations(z - STEP * dz)
         return tuple((a - b) / (2.0 * STEP) for a, b in zip(up, down, strict=True))
 
-    coupling, _, _ = self.coupling(at.contact_state, states)
+    coupling, *_ = self.coupling(at.contact_state, states)
     dz = rng.standard_normal(n + m)
     du, dp = dz[:n], dz[n:]
     force, rows = np.zeros(n), coupling.diagonal * dp

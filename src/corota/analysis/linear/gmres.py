@@ -42,66 +42,73 @@ def gmres(
         None if the iteration stalls or numbers overflow.
     steps : int
     """
-
-    def apply(v: Floats) -> Floats:
-        product = np.zeros(len(b))
-        np.add.at(product, rest.rows, rest.values * v[rest.columns])
-        return v + solve(product)
-
-    r = solve(b)
-    scale = np.ones(len(b))
-    for part in (slice(0, n_inner), slice(n_inner, len(b))):
+    # What N multiplies decides on the rest: x = M^-1 (b - N z) with these few unknowns z.
+    used = np.zeros(len(b), bool)
+    used[rest.columns] = True
+    few = np.flatnonzero(used)
+    columns = np.searchsorted(few, rest.columns)
+    start = solve(b)
+    r = start[few]
+    scale = np.ones(len(few))
+    for part in (few < n_inner, few >= n_inner):
         top = float(np.abs(r[part]).max(initial=0.0))
         scale[part] = top if top > 0.0 else 1.0
     r = r / scale
     beta = _length(r)
-    if beta == 0.0:
-        return r, 0
-    if not np.isfinite(beta):
+    if not (np.isfinite(beta) and np.isfinite(start).all()):
         return None, 0
-    basis, h = [r / beta], np.zeros((MOST_STEPS + 1, MOST_STEPS))
+    if beta == 0.0:
+        return start, 0
+    basis, h = np.empty((MOST_STEPS + 1, len(few))), np.zeros((MOST_STEPS, MOST_STEPS))
+    basis[0], moved = r / beta, []
     turns: list[tuple[float, float]] = []  # that make h triangular: cosines and sines
-    left = beta
+    sides = [beta]  # turned as well: the last is what is left
     for k in range(MOST_STEPS):
-        w = apply(basis[k] * scale) / scale
+        values = rest.values * (basis[k] * scale)[columns]
+        moved.append(solve(np.asarray(np.bincount(rest.rows, values, len(b)), np.float64)))
+        w = basis[k] + moved[k][few] / scale
         for _ in range(2):
-            for i, v in enumerate(basis):
-                part_of = _product(v, w)
-                h[i, k] += part_of
-                w -= part_of * v
-        h[k + 1, k] = length = _length(w)
+            part = basis[: k + 1] @ w
+            h[: k + 1, k] += part
+            w -= part @ basis[: k + 1]
+        length = _length(w)
         if not math.isfinite(length):
             return None, k + 1
-        turns.append(_turn(h[: k + 2, k].tolist(), turns))
-        left *= abs(turns[-1][1])
+        h[: k + 1, k], size = _turned([*h[: k + 1, k].tolist(), length], turns)
+        if size == 0.0:
+            return None, k + 1
+        cosine, sine = turns[-1]
+        sides[k:] = [cosine * sides[k], -sine * sides[k]]
+        left = abs(sides[-1])
         if left <= TOLERANCE * beta or length <= 1e-15 * beta:
-            small = np.zeros(k + 2)
-            small[0] = beta
-            y, *_ = np.linalg.lstsq(h[: k + 2, : k + 1], small, rcond=None)
-            x = scale * np.sum([c * v for c, v in zip(y, basis, strict=False)], axis=0)
-            return np.asarray(x), k + 1
+            y = np.array(sides[:-1])
+            for i in range(k, -1, -1):
+                y[i] /= h[i, i]
+                y[:i] -= y[i] * h[:i, i]
+                start -= y[i] * moved[i]
+            return start, k + 1
         if k > 20 and left > 0.5 * beta:
             return None, k + 1
-        basis.append(w / length)
+        basis[k + 1] = w / length
     return None, MOST_STEPS
 
 
-def _turn(column: list[float], turns: list[tuple[float, float]]) -> tuple[float, float]:
-    """Cosine and sine that turn the last entry of a column away, after the turns before."""
-    last = column[0]
-    for below, (cosine, sine) in zip(column[1:], turns, strict=False):
-        last = cosine * below - sine * last
-    size = math.hypot(last, column[-1])
-    return (last / size, column[-1] / size) if size > 0.0 else (1.0, 0.0)
+def _turned(column: list[float], turns: list[tuple[float, float]]) -> tuple[list[float], float]:
+    """A column after the turns so far and one that makes its last entry zero, which is added.
 
-
-def _product(a: Floats, b: Floats) -> float:
-    """Scalar product without the threads of BLAS, which cost more than they save here."""
-    return float(np.einsum("i,i->", a, b))
+    Returns the column without that entry, and what is then its last one.
+    """
+    for i, (cosine, sine) in enumerate(turns):
+        above, below = column[i : i + 2]
+        column[i : i + 2] = cosine * above + sine * below, cosine * below - sine * above
+    *column, above, below = column
+    size = math.hypot(above, below)
+    turns.append((above / size, below / size) if size > 0.0 else (1.0, 0.0))
+    return [*column, size], size
 
 
 def _length(a: Floats) -> float:
-    return math.sqrt(_product(a, a))
+    return math.sqrt(a @ a)
 
 
 __all__ = ["gmres"]

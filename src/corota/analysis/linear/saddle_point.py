@@ -145,7 +145,7 @@ class SaddlePointSystem:
         counts = np.bincount(self.columns, minlength=self.size)
         start = np.concatenate([[0], np.cumsum(counts)])
         self.pattern = SymmetricPattern(start, self.rows, self.node, self.after, self.communicator)
-        self.diagonal = self.pattern.diagonal
+        self.diagonal, self._border_begins = self.pattern.diagonal, start[self.nf]
         self._held = None
 
     def _mask(self, constrained: NDArray[np.bool_]) -> Ints:
@@ -280,11 +280,11 @@ class SaddlePointSystem:
         lengths : ndarray of float
             Of their gradients at all dofs.
         """
-        whole = np.zeros(self.n)
-        np.add.at(whole, coupling.rows.columns, coupling.rows.values**2)
-        border = np.flatnonzero((self.columns >= self.nf) & (self.rows < self.nf))
-        left = np.zeros(self.n)
-        np.add.at(left, self.columns[border] - self.nf, data[border] ** 2)
+        whole = np.bincount(coupling.rows.columns, coupling.rows.values**2, self.n)
+        # Keys are sorted by columns: those of multipliers are the last, their diagonal behind them.
+        border = np.arange(self._border_begins, len(self.keys))
+        border = border[self.rows[border] < self.nf]
+        left = np.bincount(self.columns[border] - self.nf, data[border] ** 2, self.n)
         left = self.communicator.sum(left)
         fixed = np.flatnonzero((whole > 0.0) & (left <= FIXED**2 * whole))
         out: Ints = self.communicator.broadcast(fixed)
@@ -372,7 +372,7 @@ class SaddlePointSystem:
             upper.append(even)
             rest.append(odd)
         if len(c.skew.values):
-            rest.append(Triplets.of(link.reduce_entries(c.skew, n)))
+            rest.append(Triplets.of(link.reduce_entries(c.skew, n)) if link.couples else c.skew)
         upper += [self._border(c.rows, link), Triplets(own, own, c.diagonal)]
         return Triplets.join(upper), Triplets.join([*rest, self._border(c.follow, link)])
 

@@ -21,19 +21,23 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
+    Linearized = tuple[Coupling, Floats, int, list[tuple[Floats, Floats]]]
 
 
 def linearized(
     term: ContactTerm, at: ContactState, states: States, slip_directions: dict[int, Floats]
-) -> tuple[Coupling, Floats, int]:
+) -> Linearized:
     """The border for states, its right-hand side, and its negative pivots.
+
+    Behind these, of each pair: the slopes of slipping tractions over the pressure and their
+    tractions at no pressure, shapes (n,).
 
     Parameters
     ----------
     slip_directions : dict of int to ndarray
         Signs of slipping tractions, by the pair's first multiplier.
     """
-    geometric_stiffness, skew, rows, follow = [], [], [], []
+    geometric_stiffness, skew, rows, follow, slopes = [], [], [], [], []
     diagonal, rhs = np.ones(term.n), np.zeros(term.n)
     force = np.zeros(term.system.n_dofs)
     expected = 0
@@ -41,11 +45,13 @@ def linearized(
     for pair, terms, (p, q), state in zip(term.pairs, at.terms, parts, states, strict=True):
         first, second, end = pair.first, pair.first + pair.n, pair.first + pair.width
         dp, rp, dq, rq, ratio, level = pair.rows(terms, state, p, q, slip_directions[first])
+        slopes.append((ratio, level))
         closed, sticks, share = state != OPEN, state == CLOSED, term.share(pair)
         diagonal[first:second], rhs[first:second] = share * dp, share * rp
         expected += int(closed.sum())
         acting = terms.acting
-        to_rows, to_acting = (term.dofs(t.variables) for t in (terms, acting))
+        to_rows = term.dofs(terms.variables)
+        to_acting = to_rows if acting is terms else term.dofs(acting.variables)
 
         def columns(
             name: str,
@@ -99,7 +105,7 @@ def linearized(
         force,
         near,
     )
-    return coupling, rhs, expected
+    return coupling, rhs, expected, slopes
 
 
 def second_derivatives(
@@ -117,11 +123,11 @@ def second_derivatives(
     where = term.dofs(variables)
     v = where.shape[1]
     a, b = np.repeat(where, v, axis=1).ravel(), np.repeat(where, v, axis=0).ravel()
+    inside = (a >= 0) & (b >= 0)
 
     def entries(part: Floats) -> Triplets:
         flat = -part.reshape(-1)
-        keep = (a >= 0) & (b >= 0) & (flat != 0.0)
-        return Triplets(a[keep], b[keep], flat[keep])
+        return Triplets(a, b, flat).keep(inside & (flat != 0.0))
 
     if not pair.rubs or not q.any():
         return entries(values), Triplets.join([])

@@ -422,7 +422,7 @@ def responses(
     problem.slip_directions = {
         p.first: s for p, s in zip(problem.term.pairs, slip_directions, strict=True)
     }
-    coupling, own, _ = problem.coupling(at.contact_state, states)
+    coupling, own, _, _ = problem.coupling(at.contact_state, states)
     columns = [right_sides.force[:, 0] + system.at_nodes(coupling.force)]
     columns += [system.at_nodes(f) for f in force.T]
     constrained = np.zeros((problem.n, len(columns)))

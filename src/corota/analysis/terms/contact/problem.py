@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.gaps import ContactState, Kink, Terms
+    from corota.analysis.terms.contact.linearization import Linearized
     from corota.analysis.terms.contact.pair import Pair
 
     Floats = NDArray[np.float64]
@@ -196,13 +197,21 @@ class ContactProblem:
     def solve(
         self, at: Evaluation, states: States, right_sides: RightHandSides
     ) -> tuple[Floats, Floats, int]:
-        coupling, own, expected = self.coupling(at.contact_state, states)
+        coupling, own, expected, slopes = self.coupling(at.contact_state, states)
         force = right_sides.force + self.system.at_nodes(coupling.force)[:, None] * right_sides.own
         rows = own[:, None] * right_sides.own
         release = -at.contact_state.multipliers[:, None] * right_sides.own
         du, dp, negative = self.border.solve(
             at, coupling, force, rows, release, right_sides.constrained
         )
+        each = zip(self.pairs(at.contact_state), states, slopes, strict=True)
+        for (pair, _, (p, q)), state, (ratio, level) in each:
+            if pair.two:
+                # Slipping tractions follow the pressure; they are no unknowns of the solution.
+                slips = np.flatnonzero(state != CLOSED)
+                now = np.outer(p[slips], right_sides.own) + dp[pair.first + slips]
+                new = ratio[slips, None] * now - np.outer((q - level)[slips], right_sides.own)
+                dp[pair.first + pair.n + slips] = new
         return du, dp, negative - expected if negative >= 0 else -1
 
     @property
@@ -241,8 +250,8 @@ class ContactProblem:
             out.append((parts[0], parts[1]))
         return out
 
-    def coupling(self, contact_state: ContactState, states: States) -> tuple[Coupling, Floats, int]:
-        """The border for states, its right-hand side, and its negative pivots."""
+    def coupling(self, contact_state: ContactState, states: States) -> Linearized:
+        """See :func:`linearized`."""
         return linearized(self.term, contact_state, states, self.slip_directions)
 
     # -- states --------------------------------------------------------------------------
@@ -285,16 +294,7 @@ class ContactProblem:
         }
         for (k, i), slip_direction in (slip_directions or {}).items():
             self.slip_directions[self.term.pairs[k].first][i] = slip_direction
-        du, dp, negative, states = self._held(at, states, right_sides)
-        for (pair, terms, (p, q)), state in zip(self.pairs(at.contact_state), states, strict=True):
-            if pair.two:
-                # Slipping tractions follow the pressure; they are no unknowns of the solution.
-                rows = pair.rows(terms, state, p, q, self.slip_directions[pair.first])
-                ratio, level = rows[4:]
-                now = np.outer(p, right_sides.own) + dp[pair.first : pair.first + pair.n]
-                new = ratio[:, None] * now - np.outer(q - level, right_sides.own)
-                slips = state != CLOSED
-                dp[pair.first + pair.n : pair.first + pair.width][slips] = new[slips]
+        du, dp, negative, _ = self._held(at, states, right_sides)
         return np.concatenate([du, dp]), negative
 
     def _held(
@@ -340,7 +340,9 @@ class ContactProblem:
         Otherwise a large displacement of supports distorts the mesh before anything slips. What
         supports move over the surface slips in any case: no traction can hold it.
         """
-        early = self.corrections <= 2 and not self.bounded
+        early, border = self.corrections <= 2 and not self.bounded, self.border
+        if not (early or border.left.any() or border.left_by_others.any()):
+            return *found, states
         released = [np.zeros(p.n, bool) for p in self.term.pairs]
         for _ in range(WAITED):
             new = [s.copy() for s in states]
@@ -395,14 +397,13 @@ class ContactProblem:
         """Whether a correction moves the surfaces beyond the contact search distance."""
         if self.bounded:
             return False
-        moved = self.system.by_node(du[:, 0])[:, :2]
-        constrained = 2.0 * float(
-            np.abs(self.system.by_node(right_sides.constrained[:, 0])[:, :2]).max()
+        moved, moves = (
+            np.abs(self.system.by_node(x[:, 0])[:, :2]) for x in (du, right_sides.constrained)
         )
-        for pair in self.term.pairs:
-            if pair.rubs and np.abs(moved[pair.slave.node_list]).max() > pair.reach + constrained:
-                return True
-        return False
+        return any(
+            pair.rubs and float(moved[pair.on_slave].max()) > pair.reach + 2.0 * float(moves.max())
+            for pair in self.term.pairs
+        )
 
     def _close_some(
         self,
@@ -482,7 +483,7 @@ def linearized_contact(
         ]
     states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
     contact.slip_directions = {p.first: np.ones(p.n) for p in term.pairs}
-    coupling, residuals, _ = contact.coupling(at.contact_state, states)
+    coupling, residuals, _, _ = contact.coupling(at.contact_state, states)
     own, hard = np.zeros(term.n), np.zeros(term.n, bool)
     for pair in term.pairs:
         part = pair.full / pair.stiffness
