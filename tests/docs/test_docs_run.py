@@ -37,7 +37,7 @@ def solved() -> dict[str, object]:
 
 
 #: Pages whose programs take seconds; they run with the slow tests.
-LONG = {"cable_clip", "constant_force", "crushed_tube", "detent", "snap_fit"}
+LONG = {"cable_clip", "constant_force", "corner_drop", "crushed_tube", "detent", "seal", "snap_fit"}
 #: Names that pages find defined; the others must begin from nothing.
 GIVEN: dict[str, Callable[[], dict[str, object]]] = defaultdict(lambda: dict, output=solved)
 

@@ -25,7 +25,15 @@ def test_there_are_seven() -> None:
     assert len(NOTEBOOKS) == 7
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
+#: These take seconds; they run with the slow tests.
+LONG = ("02_snap_fit", "05_impact")
+
+
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(p, marks=[pytest.mark.slow] if p.stem in LONG else []) for p in NOTEBOOKS],
+    ids=lambda p: p.stem,
+)
 def test_a_notebook_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib").use("agg")
     monkeypatch.chdir(tmp_path)

@@ -9,6 +9,7 @@ import pytest
 import corota as ct
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:increment")  # the run goes past the onset
 def test_one_cell_finds_what_four_find(load) -> None:
     """The critical load of 2 x 2 cells, by their matrices and by a path, is that of one cell."""

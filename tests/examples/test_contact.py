@@ -136,6 +136,7 @@ def test_clip_snaps_in(load: Load) -> None:
     assert dissipated[-1] > 0.0
 
 
+@pytest.mark.slow
 def test_bistable_beam_leaves_the_probe_where_its_force_vanishes(load: Load) -> None:
     """After 4 h / 3 (Qiu, Lang, Slocum 2004, slender beams); then it hangs in its second shape."""
     beam = load("contact/bistable_beam.py")

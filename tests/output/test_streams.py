@@ -122,7 +122,7 @@ def test_signal_ends_the_run_with_7_and_all_increments_on_disk(tmp_path, number,
 def test_terminal_shows_a_live_line(tmp_path, deck):
     # Long enough to be refreshed some times on any machine.
     long = deck(
-        tmp_path / "b.inp", ("INC=50", "INC=5000"), ("0.25,1.,1e-5,0.25", "1e-3,1.,1e-5,1e-3")
+        tmp_path / "b.inp", ("INC=50", "INC=5000"), ("0.25,1.,1e-5,0.25", "4e-3,1.,1e-5,4e-3")
     )
     arguments = ["run", str(DECK), "-o", str(tmp_path)]
     env = {**os.environ, "TERM": "xterm", "PYTHONIOENCODING": "utf-8"}
