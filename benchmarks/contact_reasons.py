@@ -1,8 +1,9 @@
 """Whether the reason that a contact run gives for its end is right, by means of its own.
 
-A message may name plastic collapse, a limit point or an unstable equilibrium. The first two are
-looked for in the states of the run. An equilibrium is unstable if the bodies move away from it in
-dynamics, under the same loads. A message that names nothing of this kind ("no progress", "no
+A message may name plastic collapse, a limit point, an unstable equilibrium or faces in no pair. The
+first two are looked for in the states of the run. An equilibrium is unstable if the bodies move
+away from it in dynamics, under the same loads. Faces were missing if the run ends with the whole
+boundaries in the pair. A message that names nothing of this kind ("no progress", "no
 equilibrium nearby") gives no reason: such a run counts as failed.
 """
 
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import corota as ct
+from corota.mesh.parts import part_of_cells
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -41,7 +43,7 @@ def reason(given: Problem, results: ct.Results | None, why: str) -> tuple[str, b
     Returns
     -------
     named : str
-        ``"collapse"``, ``"limit point"``, ``"unstable"``, or ``"none"``.
+        ``"collapse"``, ``"limit point"``, ``"unstable"``, ``"no pair"``, or ``"none"``.
     right : bool
     """
     if results is None or len(results.frames) < 3:
@@ -53,7 +55,26 @@ def reason(given: Problem, results: ct.Results | None, why: str) -> tuple[str, b
         return "limit point", yields and _soft(results)
     if "The last equilibrium is unstable" in why:
         return "unstable", _departs(given, results)
+    if "in no pair" in why:
+        return "no pair", _finishes_with_whole_surfaces(given)
     return "none", False
+
+
+def _finishes_with_whole_surfaces(given: Problem) -> bool:
+    """Whether the run ends with the whole boundary of each body in its pair."""
+    model = given.model.copy()
+    part, edges = part_of_cells(model.mesh), model.mesh.boundary_edges()
+    for pair in model.contacts:
+        for side in ("slave", "master"):
+            surface: Any = getattr(pair, side)
+            if not isinstance(surface, ct.RigidCurve):
+                own = part[model.mesh.edge_pairs(surface)[:, 0]]
+                setattr(pair, side, edges[np.isin(part[edges[:, 0]], own)])
+    try:
+        ct.solve(model, given.steps, threads=1, fields=False)
+    except ct.ConvergenceError:
+        return False
+    return True
 
 
 def _soft(results: ct.Results) -> bool:

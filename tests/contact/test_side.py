@@ -155,3 +155,32 @@ def test_a_deck_presses_a_block_on_a_profile_without_reference_node(tmp_path, me
     path.write_text(PRESSED.format(start=9.0, end=-5.0, method=method))
     with pytest.raises(ModelError, match="wrong side"):
         ct.solve(ct.read(path))
+
+
+def half_in_a_pair(wide):
+    """Two blocks pressed together; of one of both faces, half is in the pair."""
+    low = ct.mesh.rectangle(4.0, 1.0, nx=8, ny=2)
+    up = ct.mesh.move(ct.mesh.rectangle(4.0, 1.0, nx=8, ny=2), shift=(0.0, 1.01))
+    model = ct.Model(ct.mesh.assembly(low=low, up=up))
+    material = ct.Elastic(E=1000.0, nu=0.3)
+    model.section("all", element="Q4I", material=material, local_strain="logarithmic")
+    slave, master = (model.mesh.edge_pairs(name) for name in ("up.bottom", "low.top"))
+    if wide == "slave":
+        model.contact(slave, master[:4], name="half")
+    else:
+        model.contact(slave[:4], master, name="half")
+    model.fix("low.bottom")
+    model.fix("up.top", x=0.0, y=-0.15)
+    return model
+
+
+@pytest.mark.parametrize("wide", ["slave", "master"])
+def test_a_face_in_no_pair_that_sinks_into_the_other_body_is_noted(wide):
+    notes = ct.solve(half_in_a_pair(wide)).notes
+    assert any("in no pair lie in the other body" in note for note in notes)
+
+
+def test_a_run_that_stops_names_the_face_in_no_pair():
+    step = ct.Static(first_increment=0.5, largest_increment=0.5, max_increments=1)
+    with pytest.raises(ct.ConvergenceError, match="in no pair lie in the other body"):
+        ct.solve(half_in_a_pair("slave"), step)

@@ -234,6 +234,12 @@ class Analysis:
         owners = [self.model, *self.steps]
         return not any(o.loads or any(s.value for s in o.supports) for o in owners)
 
+    def _passed_through(self, state: State) -> list[str]:
+        """Notes on contact that no pair describes."""
+        if not self.model.contacts:
+            return []
+        return passed_through(self.model, self.system.by_node(state.u))
+
     def run(self) -> Results:
         """Run all steps; observers are always notified of the end."""
         results, begin = self.results, clock.perf_counter()
@@ -274,8 +280,7 @@ class Analysis:
                 if state.energies.made_by_contact:
                     warnings.warn(remark, stacklevel=3)
             results.notes += missed_peaks(self.pair_forces, self.model.contacts)
-            if self.model.contacts:
-                results.notes += passed_through(self.model, self.system.by_node(state.u))
+            results.notes += self._passed_through(state)
             if not state.u.any() and not results.modes and self._without_cause():
                 results.notes.append("nothing moved: no step has a load or a moving support")
         except MemoryError:
@@ -290,6 +295,10 @@ class Analysis:
                 caught.results = results
                 if stands is not None and stands.failed is not None:
                     self._keep_iterate(stands)
+                if stands is not None and isinstance(caught, ConvergenceError):
+                    for text in self._passed_through(stands):
+                        caught.reason += f". At the last increment: {text}"
+                    caught.args = (caught.reason,)
             raise
         except BaseException as caught:
             error = caught

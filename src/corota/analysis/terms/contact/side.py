@@ -162,7 +162,7 @@ def _parts(rows: int, width: int) -> Iterator[slice]:
 
 
 def passed_through(model: Model, u: Floats) -> list[str]:
-    """Notes on bodies of which a part without a pair lies behind their rigid curve.
+    """Notes on parts of bodies in no pair that lie behind a rigid curve or in another body.
 
     Parameters
     ----------
@@ -170,11 +170,11 @@ def passed_through(model: Model, u: Floats) -> list[str]:
     u : ndarray, shape (n_nodes, 3)
         Displacements and rotations at the end.
     """
-    mesh, notes = model.mesh, []
+    mesh, notes = model.mesh, _in_another(model, u)
     part = part_of_nodes(mesh)
     for curve in rigid_curves(model):
         pairs = [pair for pair in model.contacts if pair.master is curve]
-        slaves = np.concatenate([_slave_nodes(model, pair.slave) for pair in pairs])
+        slaves = np.concatenate([_surface_nodes(model, pair.slave) for pair in pairs])
         bodies = np.isin(part, part[slaves]) & (part >= 0)
         bodies[slaves] = False
         nodes = np.flatnonzero(bodies)
@@ -197,8 +197,56 @@ def passed_through(model: Model, u: Floats) -> list[str]:
     return notes
 
 
-def _slave_nodes(model: Model, slave: str | Ints) -> Ints:
-    edges, single = edges_or_nodes(model.mesh, slave)
+def _in_another(model: Model, u: Floats) -> list[str]:
+    """Notes on bodies of which a part in no pair lies in the other body of their pair."""
+    mesh, notes = model.mesh, []
+    part, x = part_of_nodes(mesh), mesh.points + u[:, :2]
+    edges = np.array([nodes[:2] for nodes in mesh.edge_nodes(mesh.boundary_edges())], np.int64)
+    surfaces = [s for pair in model.contacts for s in (pair.slave, pair.master)]
+    joined = np.concatenate(
+        [_surface_nodes(model, s) for s in surfaces if not isinstance(s, RigidCurve)]
+    )
+    free = np.setdiff1d(edges, joined)
+    for pair in model.contacts:
+        if isinstance(pair.master, RigidCurve):
+            continue
+        sides = [np.unique(part[_surface_nodes(model, s)]) for s in (pair.slave, pair.master)]
+        for own, other in (sides, sides[::-1]):
+            nodes = free[np.isin(part[free], np.setdiff1d(own, other))]
+            rim = edges[np.isin(part[edges[:, 0]], np.setdiff1d(other, own))]
+            if not len(rim):
+                continue
+            length = np.hypot(*(x[rim[:, 1]] - x[rim[:, 0]]).T)
+            inside = [k for k in nodes if _inside(x, rim, k) and not _inside(mesh.points, rim, k)]
+            depth = [_distance(x, rim, k) for k in inside]
+            if depth and max(depth) > NAMED * float(length.mean()):
+                deepest = int(np.argmax(depth))
+                notes.append(
+                    f"contact pair {pair.name!r}: boundary nodes that are in no pair lie in the "
+                    f"other body ({len(inside)} of them), node "
+                    f"{mesh.node_labels[inside[deepest]]} by {depth[deepest]:.3g}. Give the "
+                    "surfaces of the pair all edges that may meet"
+                )
+    return notes
+
+
+def _inside(x: Floats, rim: Ints, node: int) -> bool:
+    """Whether a node is inside closed boundaries (m, 2), by the parity of crossings."""
+    (ax, ay), (bx, by) = x[rim[:, 0]].T, x[rim[:, 1]].T
+    spans = (ay > x[node, 1]) != (by > x[node, 1])
+    rise = np.where(spans, by - ay, 1.0)
+    return bool((spans & (ax + (x[node, 1] - ay) / rise * (bx - ax) > x[node, 0])).sum() % 2)
+
+
+def _distance(x: Floats, rim: Ints, node: int) -> float:
+    """Distance of a node from the nearest of some edges (m, 2) [length]."""
+    along, to = x[rim[:, 1]] - x[rim[:, 0]], x[node] - x[rim[:, 0]]
+    share = np.clip((to * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    return float(np.hypot(*(to - share[:, None] * along).T).min())
+
+
+def _surface_nodes(model: Model, surface: str | Ints) -> Ints:
+    edges, single = edges_or_nodes(model.mesh, surface)
     return single if len(single) else model.mesh.edge_set_nodes(edges)
 
 
