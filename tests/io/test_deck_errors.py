@@ -157,7 +157,6 @@ def test_hardly_decks(tmp_path: Path, text: bytes, message: str) -> None:
         ("*SURFACE, NAME=s\neall, S5\n", "has 4 faces, and no face 5"),
         ("*SURFACE, NAME=s\neall, top\n", "unknown face 'TOP'"),
         ("*SURFACE, NAME=s\nnone, S1\n", "no element set named 'none'"),
-        ("*SURFACE, NAME=s\n", "surface s is empty"),
         ("*SURFACE, NAME=s\n1, S1\n*SURFACE, NAME=S\n1, S2\n", "already defined"),
         ("*AMPLITUDE, NAME=a\n0., 0., 0., 1.\n", "times must increase"),
         ("*AMPLITUDE, NAME=a\n", "at least one"),

@@ -97,6 +97,15 @@ def test_no_text_leaves_pictures_of_any_shape(shape: tuple[float, float]) -> Non
     assert not outside(bent(*shape).plot("MISES"))
 
 
+def test_a_picture_is_laid_out_until_it_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    from matplotlib.layout_engine import ConstrainedLayoutEngine as Engine
+
+    lay_out, count = Engine.execute, []
+    monkeypatch.setattr(Engine, "execute", lambda *a: (count.append(1), lay_out(*a)))
+    bent(name="beam").model.plot()
+    assert len(count) <= 3  # the last moves nothing, and no text is broken
+
+
 def test_pictures_of_a_column_fit(results: ct.Results) -> None:
     with plots.width_of(85.0):
         assert not outside(results.plot("MISES"))

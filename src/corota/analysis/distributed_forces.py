@@ -155,6 +155,8 @@ class BodyLoad:
         for point, nodes in item.point_masses(mesh, system.model.point_masses):
             for dof in (0, 1):
                 np.add.at(self.points, system.attached_dofs(nodes, dof, "point mass"), point.mass)
+        if item.kind == "centrifugal" and system.axisymmetric:
+            self.points[system.component == 1] = 0.0  # the axis of the model, not z
         self.turns = system.communicator.any(any(drilling))
         self.follows = item.kind == "centrifugal" or self.turns
         self._unit: Floats | None = None

@@ -25,7 +25,7 @@ from corota.analysis.procedures.localization import localized
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
-from corota.analysis.terms.contact.messages import missed_peaks, pair_forces
+from corota.analysis.terms.contact.messages import missed_peaks, pair_forces, sunk_between
 from corota.analysis.terms.contact.side import passed_through
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.display import brief
@@ -281,6 +281,8 @@ class Analysis:
                     warnings.warn(remark, stacklevel=3)
             results.notes += missed_peaks(self.pair_forces, self.model.contacts)
             results.notes += self._passed_through(state)
+            if self.model.contacts:
+                results.notes += sunk_between(self.system)
             if not state.u.any() and not results.modes and self._without_cause():
                 results.notes.append("nothing moved: no step has a load or a moving support")
         except MemoryError:

@@ -224,16 +224,16 @@ def fit_texts(figure: Any) -> None:
     whole: dict[Any, str] = {}
     at_edge = []
     for _ in range(2):  # broken texts change the layout
-        _settle(figure)
+        settled = _settle(figure)
         wide, high = figure.bbox.width, figure.bbox.height
-        rows, more = _rows(figure), 0
+        rows, more, changed = _rows(figure), 0, False
         for ax in figure.axes:
             box = ax.get_window_extent()
             title, left = ax._left_title, box.x0
             right = min([wide, *(o.get_window_extent().x0 for o in rows.get(ax, ()))])
             if title.get_text() and right == wide and wide - left < SHIFTED * wide:
                 title.set_x((margin - left) / box.width)
-                left = margin
+                left, changed = margin, True
                 at_edge.append(ax)
             along, up = 0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1)
             for text, space in (
@@ -245,28 +245,44 @@ def fit_texts(figure: Any) -> None:
                 broken = _broken(whole.setdefault(text, before), text, space, renderer)
                 if broken != before:
                     text.set_text(broken)
+                    changed = True
                     below = text is ax.xaxis.label and hasattr(ax, "_colorbar")
                     more += (broken.count("\n") - before.count("\n")) * (text is title or below)
+        if settled and not changed:
+            break
         if more > 0:  # the picture grows by the lines, lest the axes shrink
             inches = figure.get_size_inches()
             line = 1.25 * figure.axes[0]._left_title.get_fontsize() / 72.0
             figure.set_size_inches(inches[0], inches[1] + more * line)
-    _settle(figure)  # the last broken label may have moved the axes
+    else:
+        _settle(figure)  # the last broken label may have moved the axes
     for ax in at_edge:
         box = ax.get_window_extent()
         ax._left_title.set_x((margin - box.x0) / box.width)
 
 
-def _settle(figure: Any) -> None:
-    """Repeat the layout until axes of equal scales stay where they are."""
+def _settle(figure: Any) -> bool:
+    """Repeat the layout until axes of equal scales stay where they are, and say whether they do."""
     engine = figure.get_layout_engine()
+    if engine is None:
+        return True
+
+    def places() -> list[Any]:
+        return [ax.get_position(original).bounds for ax in figure.axes for original in (0, 1)]
+
+    before = places()
     with warnings.catch_warnings():
         # Before long texts are broken there may be no room for the axes.
         warnings.filterwarnings("ignore", "constrained_layout not applied")
-        for _ in range(LAYOUTS if engine is not None else 0):
+        for _ in range(LAYOUTS):
             engine.execute(figure)
             for ax in figure.axes:
                 ax.apply_aspect()
+            after = places()
+            if after == before:
+                return True
+            before = after
+    return False
 
 
 def fitted_title(ax: Any, text: str) -> None:

@@ -91,7 +91,7 @@ class HarmonicStepper:
         else:
             modes, lin = last_modes(system, state, step, number)
             own = modes.factors
-        self.lin, self.frequencies = lin, step.sweep(own)
+        self.lin, self.frequencies, self.own = lin, step.sweep(own), own
         self.loads, self.moves = _amplitudes(system, lin, step, number, self.frequencies)
         rates = 2.0 * math.pi * np.asarray(self.frequencies)
         self.relaxed = ComplexStiffness(lin, rates)
@@ -124,13 +124,23 @@ class HarmonicStepper:
         """Nothing: harmonic steps are not resumed."""
         return {}
 
+    def _next_answer(self) -> tuple[float, Complex, Complex]:
+        """Frequency, load and response; frequencies of undamped modes have none: left out."""
+        while True:
+            f, load, move = (x[self.taken] for x in (self.frequencies, self.loads, self.moves))
+            self.taken += 1
+            try:
+                return float(f), load, self.answer(2.0 * math.pi * f, load, move)
+            except _Resonance as error:
+                if f not in self.own:
+                    raise
+                self.state.notes.append(f"{error.message}; this frequency is left out")
+
     def advance(self) -> Accepted:
         """Find the response at the next frequency."""
         state, step, lin = self.state, self.step, self.lin
-        f, load, move = (x[self.taken] for x in (self.frequencies, self.loads, self.moves))
-        self.taken += 1
+        f, load, z = self._next_answer()
         w = 2.0 * math.pi * f
-        z = self.answer(w, load, move)
         response = lin.expand(z)
         state.u = lin.u + response.real
         state.v, state.a = (1j * w * response).real, -(w**2) * response.real
@@ -287,8 +297,12 @@ def _complex_gather(lin: LinearMotion, force: Complex) -> Complex:
     return found
 
 
-def _resonance(step: Step, number: int, w: float) -> ModelError:
-    return ModelError(
+class _Resonance(ModelError):
+    """Response without bounds at the frequency of an undamped mode."""
+
+
+def _resonance(step: Step, number: int, w: float) -> _Resonance:
+    return _Resonance(
         f"frequency {w / (2.0 * math.pi):g} is that of an undamped mode in step {number}: give a "
         "damping",
         step.where,

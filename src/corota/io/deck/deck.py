@@ -63,6 +63,8 @@ class Deck:
     lenient: bool = False
     #: Program that the deck was written for: ``calculix`` or ``abaqus``.
     dialect: str = "calculix"
+    #: Whether a card or comment says so: decks without cards of Abaqus count as CalculiX's, too.
+    of_calculix: bool = False
     #: Field variables by number; ``None`` for those that are not constant.
     fields: dict[int, float | None] = field(default_factory=dict)
     #: Element and plane (or "") by the deck's name of an element.

@@ -62,6 +62,24 @@ PARAMETERS_OF_ABAQUS = {
 }
 
 
+#: Elements that CalculiX has and Abaqus has not.
+ELEMENTS_OF_CALCULIX = re.compile(r"B3[12]R")
+#: Parameters that CalculiX has and Abaqus has not, by card.
+PARAMETERS_OF_CALCULIX = {"NODEFILE": "OUTPUT", "ELFILE": "OUTPUT", "STATIC": "SOLVER"}
+
+
+def is_of_calculix(cards: Iterable[Card]) -> bool:
+    """Whether a card, parameter or element is of CalculiX alone."""
+    return any(
+        card.has(PARAMETERS_OF_CALCULIX.get(card.keyword, "-"))
+        or (
+            card.keyword == "ELEMENT"
+            and ELEMENTS_OF_CALCULIX.fullmatch(key(card.value("TYPE"))) is not None
+        )
+        for card in cards
+    )
+
+
 def find_dialect(cards: Iterable[Card]) -> str:
     """``"abaqus"`` if a card, parameter or element is of Abaqus alone, otherwise ``"calculix"``."""
     for card in cards:

@@ -159,7 +159,7 @@ _TABLE: dict[str, Keyword] = {
     "MEMBRANE SECTION": Keyword(
         card("material.shell_section"),
         "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS",
-        "CONTROLS POISSON",
+        "OFFSET CONTROLS POISSON",
         place="model",
     ),
     "BEAM SECTION": Keyword(
@@ -355,7 +355,7 @@ _TABLE: dict[str, Keyword] = {
     "CONTACT PRINT": Keyword(
         card("output.contact_print"),
         "SLAVE MASTER TOTALS FREQUENCY FREQUENCYF TIMEPOINTS",
-        "SUMMARY NSET",
+        "SUMMARY NSET SET",
     ),
     "SECTION PRINT": Keyword(
         card("output.section_print"),

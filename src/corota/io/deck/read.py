@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from corota.errors import DeckError, Diagnostic, InputError
 from corota.io.deck.build.model import ModelBuilder
 from corota.io.deck.deck import Deck, nearest
-from corota.io.deck.dialect import find_dialect
+from corota.io.deck.dialect import find_dialect, is_of_calculix
 from corota.io.deck.elements import ELEMENTS, OWN
 from corota.io.deck.fields import find_fields
 from corota.io.deck.interpret import interpret
@@ -77,6 +77,7 @@ def read_deck(
     if (reads := card_that_reads(cards)) is not None:
         cards, saved = with_earlier_steps(deck, lexer, cards, reads)
     deck.dialect, deck.fields = lexer.dialect or find_dialect(cards), find_fields(cards)
+    deck.of_calculix = lexer.dialect == "calculix" or is_of_calculix(cards)
     for card in cards:
         interpret(deck, card)
     if not cards and not deck.n_errors:

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.gaps import SAME, WAITED, covered
+from corota.analysis.terms.contact.setup import core_of, of_lines
 from corota.analysis.terms.contact.surface import CORNER, NONE, blunt_turns, sharp_corners
 from corota.model.contact import ContactPair, RigidCurve
 
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.contact.problem import ContactProblem
+    from corota.mesh import Mesh
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -331,6 +334,67 @@ def _depth(x: Floats, pair: Pair, corner: int) -> tuple[float, tuple[int, int]]:
     return float((d[k, 0] * r[k, 1] - d[k, 1] * r[k, 0]) / square[k]), (a, b)
 
 
+#: Note alone: overlap of surfaces between the constraints of a pair from which it is reported: of a
+#: pair that presses, and of one that does not [edges].
+BETWEEN, UNHELD = 0.05, 0.02
+
+
+def sunk_between(system: System) -> list[str]:
+    """Notes on pairs of bodies whose surfaces overlap between their constraints at the end.
+
+    Mortar gaps are means over slave edges, and node-to-segment contact has the gaps of slave nodes:
+    what is small beside a slave edge goes in between. Here the gaps of all nodes count.
+    """
+    notes: list[str] = []
+    contact_term = system.term(ContactTerm)
+    if contact_term.at is None:
+        return notes
+    numbered, x = contact_term.system, contact_term.positions(contact_term.u)
+    parts = contact_term.parts(contact_term.committed)
+    for pair, (p, _) in zip(contact_term.pairs, parts, strict=True):
+        item = pair.item
+        if not isinstance(item, ContactPair) or not pair.active:
+            continue
+        # Laws let surfaces overlap; offsets and linear steps have gaps of their own.
+        if pair.law is not None or not numbered.nlgeom or pair.core.offset.any():
+            continue
+        if any(of_lines(side) for side in (pair.slave, pair.master) if side is not None):
+            continue
+        depth, node = _deepest(pair, numbered.model.mesh, x)
+        edge, presses = float(pair.slave.length.max()), bool((p > 0.0).any())
+        if depth <= (BETWEEN if presses else UNHELD) * edge:
+            continue
+        notes.append(
+            f"contact pair {pair.name!r}{'' if presses else ' has no force, though'}: the "
+            f"surfaces overlap by {depth:.3g} at node {numbered.model.mesh.node_labels[node]} at "
+            f"the end, {depth / edge:.2g} slave edges, where the pair has no constraint. Take "
+            "shorter slave edges there, the other method, or exchange slave and master"
+        )
+    return notes
+
+
+def _deepest(pair: Pair, mesh: Mesh, x: Floats) -> tuple[float, int]:
+    """Depth of the node of either side that lies deepest in the other, and the node."""
+    assert isinstance(pair.item, ContactPair)
+    item = replace(pair.item, method="node_to_segment")
+    sides = [(item, pair.slave, pair.master)]
+    if pair.master is not None and not isinstance(item.master, RigidCurve) and item.images is None:
+        exchanged = replace(item, slave=item.master, master=item.slave, smooth=False)
+        sides.append((exchanged, pair.master, pair.slave))
+    worst, node = 0.0, -1
+    for own, slave, master in sides:
+        core = core_of(mesh, own, slave, master, pair.reach, pair.depth)
+        core.search(x)
+        found = core.evaluate(x)
+        area = found["total_area"]
+        seen = covered(area, np.asarray(core.full_area))
+        depth = np.where(seen, -found["total_gap"] / np.where(seen, area, 1.0), 0.0)
+        k = int(np.argmax(depth))
+        if depth[k] > worst:
+            worst, node = float(depth[k]), int(core.nodes[k])
+    return worst, node
+
+
 #: Note alone: change of a force beside its largest value, relative to it, from which an increment
 #: may have missed the peak.
 STEEP = 0.05
@@ -380,5 +444,6 @@ __all__ = [
     "missed_peaks",
     "pair_forces",
     "partly_covered_note",
+    "sunk_between",
     "sunk_corner",
 ]

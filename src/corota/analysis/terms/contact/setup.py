@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.numbered_model import NumberedModel
+    from corota.mesh import Mesh
 
     Floats = NDArray[np.float64]
     #: The core's pair, its surfaces, its search distance and the depth of a penetration it sees.
@@ -166,7 +167,6 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
         If the surfaces cannot come into contact.
     """
     mesh = system.model.mesh
-    x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
     slave = surface(system, item.slave, item)
     longest = float(slave.length.max())
     master: Surface | None = None
@@ -176,7 +176,7 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
             master = master.repeated(item.images)
         longest = max(longest, float(master.length.max()))
     reach = item.reach or REACH * longest
-    if _of_lines(slave) or (master is not None and _of_lines(master)):
+    if of_lines(slave) or (master is not None and of_lines(master)):
         if item.itself:
             raise ModelError(
                 f"contact pair {item.name!r}: a line, or single nodes, cannot meet themselves; "
@@ -185,14 +185,11 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
             )
         against = item.master if isinstance(item.master, RigidCurve) else master
         assert against is not None
-        bodies = [s for s in (slave, master) if s is not None and not _of_lines(s)]
+        bodies = [s for s in (slave, master) if s is not None and not of_lines(s)]
         depth = min((float(_thickness(system, body).max()) for body in bodies), default=reach)
         return line_core(system, item, slave, against, reach, depth)
     if master is not None:
         _check_pair(system, item, slave, master)
-    margin = 0.5 * reach
-    # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
-    corners = item.law is None
     thickness = _thickness(system, slave)
     # Deeper inside a body, the core takes the opposite side for that of another body.
     same = item.itself
@@ -200,72 +197,64 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
         part = part_of_cells(mesh)
         same = bool(np.isin(part[slave.edges[:, 0]], part[master.edges[:, 0]]).any())
     depth = 0.5 * float(thickness.min()) if same else float(thickness.max())
+    if item.itself:
+        slave = along_contour(slave, mesh.points)
+    if master is not None and not system.axisymmetric:
+        slave.thickness[:] = joint_thickness(
+            mesh.points, slave.nodes, slave.thickness, master.nodes, master.thickness
+        )
+    core = core_of(mesh, item, slave, master, reach, depth)
+    # A boundary that meets itself is both sides; a rigid master knows its own rotation.
+    core.carry(carrier(system, slave), carrier(system, master or slave))
+    return core, slave, master, reach, depth
+
+
+def core_of(
+    mesh: Mesh,
+    item: ContactPair,
+    slave: Surface,
+    master: Surface | None,
+    reach: float,
+    depth: float,
+) -> _core.Contact:
+    """The core's pair of two surfaces of bodies, of one with itself or with a rigid curve.
+
+    Raises
+    ------
+    ModelError
+        If the core refuses it.
+    """
+    x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
+    own = x, slave.nodes, slave.bulge, slave.thickness
+    # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
+    facts: Any = {
+        "method": item.method,
+        "reach": reach,
+        "margin": 0.5 * reach,
+        "corners": item.law is None,
+    }
     try:
         if item.itself:
-            slave = along_contour(slave, mesh.points)
-            core = _core.Contact.itself(
-                x,
-                slave.nodes,
-                slave.bulge,
-                slave.thickness,
-                method=item.method,
-                reach=reach,
-                margin=margin,
-                corners=corners,
-            )
-        elif isinstance(item.master, RigidCurve):
+            return _core.Contact.itself(*own, **facts)
+        if isinstance(item.master, RigidCurve):
             reference = item.master.reference
             node, point = -1, (0.0, 0.0)
             if isinstance(reference, tuple):
                 point = reference
             elif reference is not None:
                 node = int(reference)
-            core = _core.Contact.rigid(
-                x,
-                slave.nodes,
-                slave.bulge,
-                slave.thickness,
-                item.master.backward,
-                node,
-                point,
-                turns=item.master.turns,
-                method=item.method,
-                reach=reach,
-                margin=margin,
-                depth=depth,
-                corners=corners,
-            )
-        else:
-            assert master is not None
-            if not system.axisymmetric:
-                slave.thickness[:] = joint_thickness(
-                    mesh.points, slave.nodes, slave.thickness, master.nodes, master.thickness
-                )
-            nodes, bulge, shapes = master.nodes, master.bulge, None
-            if item.smooth:
-                nodes, bulge, shapes = smoothed(mesh.points, master)
-            core = _core.Contact.edges(
-                x,
-                slave.nodes,
-                slave.bulge,
-                slave.thickness,
-                nodes,
-                bulge,
-                master_shapes=shapes,
-                method=item.method,
-                reach=reach,
-                margin=margin,
-                depth=depth,
-                corners=corners,
-            )
+            rows, turns = item.master.backward, item.master.turns
+            return _core.Contact.rigid(*own, rows, node, point, turns=turns, depth=depth, **facts)
+        assert master is not None
+        nodes, bulge, shapes = master.nodes, master.bulge, None
+        if item.smooth:
+            nodes, bulge, shapes = smoothed(mesh.points, master)
+        return _core.Contact.edges(*own, nodes, bulge, master_shapes=shapes, depth=depth, **facts)
     except ValueError as error:
         raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
-    # A boundary that meets itself is both sides; a rigid master knows its own rotation.
-    core.carry(carrier(system, slave), carrier(system, master or slave))
-    return core, slave, master, reach, depth
 
 
-def _of_lines(side: Surface) -> bool:
+def of_lines(side: Surface) -> bool:
     """Whether a surface consists of lines or single nodes."""
     return side.two_sided or side.points is not None
 
@@ -304,7 +293,7 @@ def tie_core(system: NumberedModel, item: Tie) -> Core:
     slave, master = surface(system, item.slave, item), surface(system, item.master, item)
     longest = float(max(slave.length.max(), master.length.max()))
     reach = item.tolerance or 0.1 * longest
-    if _of_lines(slave):
+    if of_lines(slave):
         return line_core(system, item, slave, master, reach, np.inf)
     _check_pair(system, item, slave, master)
     try:
@@ -377,4 +366,4 @@ def _towards(x: Floats, slave: Surface, master: Surface, out: Floats) -> bool:
     return bool((((corner - at) * out).sum(axis=1) > -0.5 * slave.length.max()).any())
 
 
-__all__ = ["contact_core", "surface", "tie_core"]
+__all__ = ["contact_core", "core_of", "of_lines", "surface", "tie_core"]

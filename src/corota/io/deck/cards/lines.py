@@ -107,7 +107,7 @@ def _common(deck: Deck, card: Card, most: int) -> list[Row] | None:
 def beam_section(deck: Deck, card: Card) -> None:
     """``*BEAM SECTION, ELSET=, MATERIAL=, SECTION=RECT, CIRC or PIPE``: sizes; first axis."""
     elset, material = deck.required(card, "ELSET"), deck.required(card, "MATERIAL")
-    kind = deck.choice(card, "SECTION", SIZES, "")
+    kind = _kind(deck, card)
     rows = _common(deck, card, 3)
     if rows is None or not kind:
         if not kind and not card.has("SECTION"):
@@ -128,6 +128,12 @@ def beam_section(deck: Deck, card: Card) -> None:
         deck.scope.lines.append(_beam(card, elset, kind, profile, material))
 
 
+def _kind(deck: Deck, card: Card) -> str:
+    """Kind of a cross-section, by its first four letters, as in CalculiX; empty after an error."""
+    word = key(card.value("SECTION"))[:4]
+    return word if word in SIZES else deck.choice(card, "SECTION", SIZES, "")
+
+
 def _sizes(deck: Deck, card: Card, row: Row, kind: str) -> list[float] | None:
     """Sizes of a cross-section; ``None`` after an error."""
     names = SIZES[kind]
@@ -135,13 +141,17 @@ def _sizes(deck: Deck, card: Card, row: Row, kind: str) -> list[float] | None:
         deck.note(f"{row.where}: one number of a circle is its radius, as in Abaqus")
         radius = _numbers(deck, card, row, ("the radius",))
         return None if radius is None else [2.0 * radius[0], 2.0 * radius[0]]
+    if kind == "CIRC" and not row.get(1) and deck.of_calculix:
+        deck.note(f"{row.where}: one number of a circle is its diameter, as in CalculiX")
+        diameter = _numbers(deck, card, row, ("the diameter",))
+        return None if diameter is None else 2 * diameter
     if kind == "CIRC" and not row.get(1):
         deck.row_error(
             card,
             row,
             0,
             "one number is the radius in Abaqus and the diameter in CalculiX",
-            "give both diameters: d, d",
+            "give both diameters: d, d; or say ** DIALECT: calculix or abaqus on a line of its own",
         )
         return None
     deck.extra_fields(card, row, len(names))

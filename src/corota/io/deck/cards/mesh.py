@@ -345,7 +345,7 @@ def surface(deck: Deck, card: Card) -> None:
             continue
         found.rows.append(SurfaceRow(row.where, row.text, row.get(0), key(row.get(1))))
     if not found.rows:
-        deck.error(card, card.where, f"surface {name} is empty")
+        deck.note(f"{card.where}: surface {name} is empty")
 
 
 def _combination(deck: Deck, card: Card, found: Surface) -> None:

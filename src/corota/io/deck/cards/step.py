@@ -45,8 +45,11 @@ def step(deck: Deck, card: Card) -> None:
         turn = "turns" if len(deck.nonlinear) == 1 else "turn"
         deck.note(f"{names} {turn} NLGEOM on in steps that do not say NLGEOM=NO, as in CalculiX")
     if card.has("NLGEOM"):
-        nlgeom = deck.choice(card, "NLGEOM", ("YES", "NO", ""), "YES") != "NO" or before
-        if before and nlgeom and key(card.value("NLGEOM")) == "NO":
+        nlgeom = (
+            deck.choice(card, "NLGEOM", ("YES", "NO", "ON", "OFF", ""), "YES") not in ("NO", "OFF")
+            or before
+        )
+        if before and nlgeom and key(card.value("NLGEOM")) in ("NO", "OFF"):
             deck.notes.append(
                 f"{card.where}: NLGEOM=NO after a step with NLGEOM has no effect: large "
                 "rotations stay on, because the structure would jump to the solution of the "
@@ -147,11 +150,15 @@ def step_times(deck: Deck, card: Card, now: StepDraft) -> None:
         deck.row_error(
             card, rows[0], 2, f"the smallest increment {least:g} exceeds the first, {first:g}"
         )
-    elif most and most < first:
+    elif most and most < least:
         deck.row_error(
-            card, rows[0], 3, f"the largest increment {most:g} is below the first, {first:g}"
+            card, rows[0], 3, f"the largest increment {most:g} is below the smallest, {least:g}"
         )
     else:
+        if most and most < first:
+            text = f"the first increment {first:g} is reduced to the largest, {most:g}"
+            deck.note(f"{rows[0].where}: {text}")
+            first = most
         now.times = (first, period, least, most)
 
 
