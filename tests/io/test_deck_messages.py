@@ -182,3 +182,17 @@ def test_lost_elements_of_a_set_are_told_once(tmp_path: Path) -> None:
     assert [d.message for d in found] == [
         "element 7 and 3 others in set some: not defined in the deck"
     ]
+
+
+@pytest.mark.parametrize("joint", ["*TIE, NAME=T\nhigh, low\n", ""])
+def test_edges_that_a_joint_connects_are_not_called_open(joint: str, tmp_path: Path) -> None:
+    """Two blocks one on the other, with two nodes at each place of their joint."""
+    text = (
+        "*NODE\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n5, 0., 1.\n6, 1., 1.\n7, 1., 2.\n"
+        "8, 0., 2.\n*ELEMENT, TYPE=CPS4, ELSET=E\n1, 1, 2, 3, 4\n2, 5, 6, 7, 8\n"
+        "*MATERIAL, NAME=M\n*ELASTIC\n1000., .3\n*SOLID SECTION, ELSET=E, MATERIAL=M\n"
+        f"*SURFACE, NAME=low\n1, S3\n*SURFACE, NAME=high\n2, S1\n{joint}"
+        "*BOUNDARY\n1, 1, 2\n2, 2\n8, 1\n*STEP\n*STATIC\n*CLOAD\n7, 2, -1.\n*END STEP\n"
+    )
+    said = [d.message for d in check(read(tmp_path, text)) if "not joined" in d.message]
+    assert bool(said) == (not joint)
