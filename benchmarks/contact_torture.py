@@ -85,7 +85,6 @@ def outcome(given: Problem, limit: int, answers: bool = False) -> dict[str, Any]
         out["reached"] = results.times[-1] / sum(step.period for step in given.steps)
         out["cut-backs"] = int(results.info.get("cut-backs", 0))
         out["all iterations"] = int(results.info.get("iterations", out["iterations"]))
-        out["stages"] = results.info.get("contact stages", {})
         last = results.frames[-1]
         out["residual"] = max(f.scalars.get("residual", 0.0) for f in results.frames[1:])
         force = {
