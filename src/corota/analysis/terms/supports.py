@@ -109,7 +109,7 @@ class Supports:
     def _fix(self, items: list[Fixed], nodes: list[Ints]) -> None:
         self.acting += items
         number, every, dofs = self._dofs(items, nodes)
-        for k in np.unique(number[dofs < 0]).tolist():
+        for k in sorted(set(number[dofs < 0].tolist())):
             item, missing = items[k], (number == k) & (dofs < 0)
             # A rotation may be given for nodes without one, as with dofs 1-6 in decks.
             if item.dof == 2 and item.value != 0.0:
@@ -123,7 +123,7 @@ class Supports:
 
                 self.notes.append(without_rotation(self.system.model.mesh, item))
         number, dofs = number[dofs >= 0], dofs[dofs >= 0]
-        for k in np.unique(number[self.system.constraints.place[dofs] >= 0]).tolist():
+        for k in sorted(set(number[self.system.constraints.place[dofs] >= 0].tolist())):
             self.system.constraints.refuse_constrained(dofs[number == k], items[k].where)
         if self.system.guided:
             for k, item in enumerate(items):

@@ -201,7 +201,8 @@ def _in_another(model: Model, u: Floats) -> list[str]:
     """Notes on bodies of which a part in no pair lies in the other body of their pair."""
     mesh, notes = model.mesh, []
     part, x = part_of_nodes(mesh), mesh.points + u[:, :2]
-    edges = np.array([nodes[:2] for nodes in mesh.edge_nodes(mesh.boundary_edges())], np.int64)
+    rims = [nodes[:2] for nodes in mesh.edge_nodes(mesh.boundary_edges())]
+    edges = np.array(rims, np.int64).reshape(-1, 2)
     surfaces = [s for pair in model.contacts for s in (pair.slave, pair.master)]
     joined = np.concatenate(
         [_surface_nodes(model, s) for s in surfaces if not isinstance(s, RigidCurve)]
