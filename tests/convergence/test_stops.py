@@ -13,6 +13,8 @@ import pytest
 
 import corota as ct
 from benchmarks.contact_case_models import collapse
+from corota.analysis.procedures.path.branches import BranchTracer
+from corota.analysis.procedures.path.plan import PathStalled
 from corota.analysis.procedures.stopping import plateau
 from corota.cli import main
 from corota.model.paths import CriticalPoint
@@ -209,6 +211,22 @@ def test_a_yield_plateau_counts_up_to_its_end():
     assert longest(((250.0, 0.0),)) == 0.0
     assert longest(HARDENING, PLATEAU) == pytest.approx(24.0)
     assert longest(((250.0, 0.0), (300.0, 0.1), (300.0, 0.2))) == 0.0  # perfect in the end
+
+
+def test_a_path_without_an_equilibrium_near_its_start_stops_with_its_reason(monkeypatch):
+    """Two problems of contact ended with an internal error: the path had no direction yet."""
+
+    def stalls(self):
+        raise PathStalled("no equilibrium near the start")
+        yield
+
+    monkeypatch.setattr(BranchTracer, "_begin", stalls)
+    model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+    model.fix("left")
+    model.force("right", y=0.01)
+    with pytest.raises(ct.ConvergenceError, match="no equilibrium near the start"):
+        ct.solve(model, ct.Static(path=ct.ArcLength()))
 
 
 def test_unknown_pivots_are_not_told():

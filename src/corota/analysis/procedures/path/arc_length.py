@@ -125,7 +125,8 @@ class PathStepper:
         try:
             self.loop.run(self)
         except PathStalled as stalled:
-            self.rates = self.rates[0], max(self.rates[1], self._rate_behind())
+            if self.follower.begun:
+                self.rates = self.rates[0], max(self.rates[1], self._rate_behind())
             raise ConvergenceError(
                 f"{self.stopped}: {stalled}. All converged increments are kept"
             ) from None
