@@ -64,6 +64,15 @@ def block(element, strain=None, material=None):
     return model, ends
 
 
+#: Weights am and af of each scheme with its default dissipation (Arnold and Bruels 2007).
+FILTERS = {
+    "hht": (0.0, 0.05),
+    "newmark": (0.0, 0.0),
+    "bossak": (-0.05, 0.0),
+    "generalized_alpha": (0.6 / 1.8, 0.8 / 1.8),
+}
+
+
 def shares(mesh, ends):
     """Nodes of the edge with their shares of a uniform load."""
     middle = {0.5: 2.0 / 3.0, 0.0: 1.0 / 6.0, 1.0: 1.0 / 6.0}
@@ -81,12 +90,7 @@ def pull(target, model, ends, size):
 )
 def test_one_large_increment_solves_the_equation_of_its_scheme(element, strain, scheme):
     # a = (F - N(u))/m at both ends, filtered by am and af (Arnold and Bruels 2007); u by Newmark.
-    am, af = {
-        "hht": (0.0, 0.05),
-        "newmark": (0.0, 0.0),
-        "bossak": (-0.05, 0.0),
-        "generalized_alpha": (0.6 / 1.8, 0.8 / 1.8),
-    }[scheme]
+    am, af = FILTERS[scheme]
     gamma = 0.5 - am + af
     beta = 0.25 * (1.0 - am + af) ** 2
     dt, load, v0 = 0.25, 30.0, 0.8
@@ -231,12 +235,7 @@ def test_one_large_increment_that_yields(scheme):
     # Newmark's relations with N of a bar that hardens linearly (true stress over logarithmic strain
     # is Kirchhoff's over the stretch); work = motion + energy stored + plastic work.
     sy, h, dt, v0 = 5.0, 10.0, 0.1, 2.0
-    am, af = {
-        "hht": (0.0, 0.05),
-        "newmark": (0.0, 0.0),
-        "bossak": (-0.05, 0.0),
-        "generalized_alpha": (0.6 / 1.8, 0.8 / 1.8),
-    }[scheme]
+    am, af = FILTERS[scheme]
     beta = 0.25 * (1.0 - am + af) ** 2
 
     def pulled(u):
