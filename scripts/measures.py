@@ -16,6 +16,8 @@ CONTACT = "analysis/terms/contact/"
 CONSTANT = r"^_?[A-Z][A-Z0-9_]*(, [A-Z][A-Z0-9_]*)*(: [^=]+)? = "
 #: The contact term of a system, by its class or by the attribute that it once was.
 TERM = r"\b(contact_term|ContactTerm)\b"
+#: Beginning of an import from the folder of contact, for types as well.
+IMPORT = "from corota.analysis.terms.contact"
 #: A drawer of the evaluation.
 DRAWER = r"^    [a-z]\w*: "
 
@@ -53,6 +55,9 @@ MEASURES: dict[str, Callable[[Path], int]] = {
     ),
     "of these outside its folder": lambda t: sum(
         bool(re.search(TERM, text)) for p, text in sources(t) if not p.startswith(CONTACT)
+    ),
+    "files outside that import from its folder": lambda t: sum(
+        IMPORT in text for p, text in sources(t) if not p.startswith(CONTACT)
     ),
     "lines of analysis": lambda t: size(t, "analysis/"),
     "lines with Any in analysis": lambda t: lines_with(t, r"\bAny\b", r"^(?!analysis/)"),

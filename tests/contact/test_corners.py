@@ -20,7 +20,6 @@ from corota import _core
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.messages import sunk_corner
 from corota.model.contact import METHODS
 from corota.model.loads import Fixed
 from support.pairs import quickly
@@ -352,10 +351,10 @@ def test_the_message_of_a_run_that_stops_names_a_corner_under_a_pressure_law() -
     system = System(model, Multifrontal())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
     term = system.term(ContactTerm)
-    assert sunk_corner(system) == ""
+    assert system.wedges() == ""
     term.u = np.zeros(system.n_dofs)
     term.u[system.dofs(model.mesh.nodes_of("square"), 1)] = -DEEP
-    assert "sharp corner of the master at node" in sunk_corner(system)
+    assert "sharp corner of the master at node" in system.wedges()
 
 
 @pytest.mark.parametrize(

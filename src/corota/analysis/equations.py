@@ -125,6 +125,18 @@ class System(NumberedModel):
         """What slides or tips beyond the committed state, for messages; or nothing."""
         return next(filter(None, (term.gives_way() for term in self.terms)), "")
 
+    def wedges(self) -> str:
+        """What is wedged in the committed state, for messages; or nothing."""
+        return next(filter(None, (term.wedges() for term in self.terms)), "")
+
+    def remarks(self, u: Floats, finished: bool) -> list[str]:
+        """Remarks on the displacement at which a run ends, `finished` or not."""
+        return [text for term in self.terms for text in term.remarks(u, finished)]
+
+    def keeps(self, at: Evaluation, states: list[NDArray[np.int8]], tolerance: float) -> bool:
+        """Whether `states` of constraints are those of an equilibrium; see :class:`Term`."""
+        return all(term.keeps(at, states, tolerance) for term in self.terms)
+
     # -- evaluation --------------------------------------------------------------------
 
     def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:

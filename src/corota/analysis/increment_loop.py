@@ -20,12 +20,16 @@ from corota.results.observer import Iteration
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from corota.analysis.equations import System
     from corota.analysis.newton import Outcome, ResidualNorms
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
-    from corota.analysis.terms.contact.newton import ContactIncrement
     from corota.model.steps import Dynamic, Static, Step
+
+    Floats = NDArray[np.float64]
 
     Save = Callable[[State, int, float, dict[str, float]], None]
     Report = Callable[[int, ResidualNorms, float, str], None]
@@ -193,6 +197,19 @@ class IncrementLoop:
                 factor,
             )
         )
+
+
+class ContactIncrement(Protocol):
+    """Contact of a solved increment, which a model without it has as well."""
+
+    @property
+    def force(self) -> Floats:
+        """Of contact on the nodes at its end, shape (n_dofs,)."""
+        ...
+
+    def accept(self, u: Floats, step_time: float) -> list[str]:
+        """Commit contact with the increment; returns remarks that are new."""
+        ...
 
 
 @dataclass

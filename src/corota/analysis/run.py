@@ -19,14 +19,13 @@ from corota.analysis.equations import System
 from corota.analysis.failure import ElementFailure
 from corota.analysis.linear.solvers import make_solver
 from corota.analysis.memory import require_libraries
+from corota.analysis.missed_peaks import missed_peaks, pair_forces
 from corota.analysis.observers import Observers
 from corota.analysis.parallel.communicator import ALONE
 from corota.analysis.procedures.localization import localized
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
-from corota.analysis.terms.contact.messages import missed_peaks, pair_forces, sunk_between
-from corota.analysis.terms.contact.side import passed_through
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.display import brief
 from corota.errors import (
@@ -234,12 +233,6 @@ class Analysis:
         owners = [self.model, *self.steps]
         return not any(o.loads or any(s.value for s in o.supports) for o in owners)
 
-    def _passed_through(self, state: State) -> list[str]:
-        """Notes on contact that no pair describes."""
-        if not self.model.contacts:
-            return []
-        return passed_through(self.model, self.system.by_node(state.u))
-
     def run(self) -> Results:
         """Run all steps; observers are always notified of the end."""
         results, begin = self.results, clock.perf_counter()
@@ -280,9 +273,7 @@ class Analysis:
                 if state.energies.made_by_contact:
                     warnings.warn(remark, stacklevel=3)
             results.notes += missed_peaks(self.pair_forces, self.model.contacts)
-            results.notes += self._passed_through(state)
-            if self.model.contacts:
-                results.notes += sunk_between(self.system)
+            results.notes += self.system.remarks(state.u, finished=True)
             if not state.u.any() and not results.modes and self._without_cause():
                 results.notes.append("nothing moved: no step has a load or a moving support")
         except MemoryError:
@@ -298,7 +289,7 @@ class Analysis:
                 if stands is not None and stands.failed is not None:
                     self._keep_iterate(stands)
                 if stands is not None and isinstance(caught, ConvergenceError):
-                    for text in self._passed_through(stands):
+                    for text in self.system.remarks(stands.u, finished=False):
                         caught.reason += f". At the last increment: {text}"
                     caught.args = (caught.reason,)
             raise

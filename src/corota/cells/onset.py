@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
-from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.contact.gaps import OPEN, SLIPPING, covered
 from corota.analysis.terms.linearized import Linearized
 from corota.cells.states import point_of, settle, state_at
 from corota.cells.waves import UNIFORM, Waves
@@ -146,23 +144,8 @@ def _keeps_contact(state: State) -> bool:
     pressures, states = state.contact
     if pressures is None:
         return True
-    term = state.system.term(ContactTerm)
     lin = Linearized(state.system, state.u, pressures, states, time=state.time)
-    most = OVER * max(float(np.abs(pressures).max(initial=0.0)), 1e-300)
-    contact = lin.at.contact_state
-    each = zip(term.pairs, contact.terms, term.parts(pressures), states, strict=True)
-    for pair, terms, (p, q), own in each:
-        if pair.tied:
-            continue
-        seen = covered(terms.area, pair.full)
-        through = seen & (terms.gap < -OVER * state.system.length * pair.full)
-        bad = (own == OPEN) & through
-        bad |= (own != OPEN) & (p < -most)
-        if pair.rubs:
-            bad |= (own == SLIPPING) | (np.abs(q) > pair.friction * p + most)
-        if bad.any():
-            return False
-    return True
+    return state.system.keeps(lin.at, states, OVER)
 
 
 def _mode(cell: Cell, state: State, wave: Floats) -> Floats | None:

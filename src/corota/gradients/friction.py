@@ -16,7 +16,6 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from corota.analysis.terms.contact.gaps import CLOSED
 from corota.errors import UnsupportedError
 from corota.gradients.differences import all_derivatives
 from corota.gradients.surfaces import contact_of, evaluate, residuals
@@ -127,8 +126,8 @@ def _by_multipliers(system: System, u: Floats, time: float, surfaces: Surfaces) 
     entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
     border = sp.coo_array(entries, shape=(system.n_dofs, term.n)).tocsc()
     diagonal = sp.lil_array((term.n, term.n))
-    for pair, state_of, sign in zip(term.pairs, surfaces.states, surfaces.signs, strict=True):
-        for k in np.flatnonzero((state_of != CLOSED) & (state_of != 0)):
+    for pair, slips, sign in zip(term.pairs, surfaces.slipping, surfaces.signs, strict=True):
+        for k in np.flatnonzero(slips):
             own = pair.first + pair.n + k
             diagonal[own, own] = 1.0
             diagonal[own, pair.first + k] = -sign[k] * pair.friction[k]

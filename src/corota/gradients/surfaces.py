@@ -68,6 +68,11 @@ class Surfaces:
             found.append(np.tile(state != OPEN, 2 if len(sign) else 1))
         return np.concatenate([np.zeros(0, bool), *found])
 
+    @property
+    def slipping(self) -> list[NDArray[np.bool_]]:
+        """Whether each constraint slips, by pair."""
+        return [state == SLIPPING for state in self.states]
+
 
 def contact_of(system: System) -> ContactTerm:
     """The term of contact and ties of a system."""

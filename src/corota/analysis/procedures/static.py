@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.increment_loop import Report
+    from corota.analysis.increment_loop import ContactIncrement, Report
     from corota.analysis.newton import ResidualNorms
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
-    from corota.analysis.terms.contact.newton import ContactIncrement
+    from corota.analysis.terms.contact.equations import ContactEquations
     from corota.model.materials import Material
     from corota.model.steps import Static
 
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 # What a step without difficulties does not need.
 at_limit = lazy("corota.analysis.procedures.stopping:at_limit")
 collapse = lazy("corota.analysis.procedures.stopping:collapse")
+relax = lazy("corota.analysis.terms.contact.relaxation:relax")
 driven = lazy("corota.analysis.procedures.stopping:driven")
 explanation = lazy("corota.analysis.procedures.stopping:explanation")
 passed = lazy("corota.analysis.procedures.stopping:passed")
@@ -375,6 +376,22 @@ class StaticStepper(NewtonStepper):
         elif not outcome.reason:
             outcome.reason = "no convergence"
         return outcome, contact
+
+    def relax(self, target: float, nearby: bool, motion: bool) -> tuple[Outcome, ContactEquations]:
+        """An increment to a step time from the committed state by relaxation; see `relax`."""
+        system, u = self.system, self.state.u
+        prescribed = system.conditions.supports.at(target, u)
+        found: tuple[Outcome, ContactEquations] = relax(
+            system,
+            u,
+            prescribed,
+            target,
+            self.settings,
+            self.report,
+            nearby=nearby,
+            motion=motion,
+        )
+        return found
 
     def rescue(self, failed: Attempt, end: str) -> Attempt | None:
         """The increment by relaxation, or the rest of the step along the path."""

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from corota.analysis.increment_loop import Attempt
-from corota.analysis.terms.contact.messages import sunk_corner
-from corota.analysis.terms.contact.relaxation import relax
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -68,18 +66,8 @@ def by_relaxation(stepper: StaticStepper) -> Attempt | str:
     for fraction, motion in tries:
         size = fraction * control.step.period
         target = min([control.time + size, *(s for s in control.stops if s > control.time)])
-        prescribed = system.conditions.supports.at(target, state.u)
         try:
-            outcome, contact = relax(
-                system,
-                state.u,
-                prescribed,
-                target,
-                stepper.settings,
-                stepper.report,
-                nearby=loaded,
-                motion=motion,
-            )
+            outcome, contact = stepper.relax(target, loaded, motion)
         except SingularError:
             continue
         # Unconstrained bodies that did not move are not in a first equilibrium.
@@ -106,7 +94,7 @@ def by_relaxation(stepper: StaticStepper) -> Attempt | str:
         return ""
     tried = "neither relaxation nor a damped motion" if len(ladder) > 1 else "no relaxation"
     said = f"; {tried} from the last converged state found an equilibrium nearby"
-    if sunk_corner(system):
+    if system.wedges():
         return said  # the message has the reason
     return (
         f"{said}: the bodies snap or fold (Dynamic follows that), or supports press them into a "

@@ -162,6 +162,27 @@ class Term(Protocol):
         """What it lets slide or tip beyond the committed state, for messages; or nothing."""
         return ""
 
+    def wedges(self) -> str:
+        """What is wedged in the committed state, for messages; or nothing."""
+        return ""
+
+    def remarks(self, u: Floats, finished: bool) -> list[str]:
+        """Remarks on the displacement at which a run ends, `finished` or not."""
+        return []
+
+    def keeps(self, at: Evaluation, states: list[NDArray[np.int8]], tolerance: float) -> bool:
+        """Whether `states` of its constraints are those of an equilibrium.
+
+        Parameters
+        ----------
+        at : Evaluation
+            The equilibrium, with multipliers.
+        states : list of ndarray
+        tolerance : float
+            Share of the largest multiplier, and of the size of the model, that is rounding.
+        """
+        return True
+
 
 #: User-defined terms: each entry gives the term of a model, or ``None`` where it has none. They
 #: act on displacements and velocities, in every scheme and in all linear procedures.

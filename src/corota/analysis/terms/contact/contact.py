@@ -16,6 +16,7 @@ import numpy as np
 
 from corota.analysis.terms.contact.gaps import (
     OPEN,
+    SLIPPING,
     ContactState,
     Terms,
     covered,
@@ -52,6 +53,9 @@ what_gives_way = lazy("corota.analysis.terms.contact.messages:gives_way")
 partly_covered_note = lazy("corota.analysis.terms.contact.messages:partly_covered_note")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 near_side = lazy("corota.analysis.terms.contact.kinks:near_side")
+passed_through = lazy("corota.analysis.terms.contact.side:passed_through")
+sunk_between = lazy("corota.analysis.terms.contact.messages:sunk_between")
+sunk_corner = lazy("corota.analysis.terms.contact.messages:sunk_corner")
 
 #: Procedures that support contact and ties between surfaces.
 WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
@@ -189,6 +193,35 @@ class ContactTerm(Term):
         """Whether a body slides or tips beyond the committed state."""
         said: str = what_gives_way(self)
         return said
+
+    def wedges(self) -> str:
+        """The sharp corner of a master that is wedged in a slave surface."""
+        said: str = sunk_corner(self)
+        return said
+
+    def remarks(self, u: Floats, finished: bool) -> list[str]:
+        """Remarks on what went through a surface that no pair describes, or sank in between."""
+        if not self.opens:
+            return []
+        notes: list[str] = passed_through(self.system.model, self.system.by_node(u))
+        return notes + (sunk_between(self) if finished else [])
+
+    def keeps(self, at: Evaluation, states: list[NDArray[np.int8]], tolerance: float) -> bool:
+        """Whether `states` have pressures, gaps and friction of an equilibrium; none slips."""
+        contact = at.contact_state
+        most = tolerance * max(float(np.abs(contact.multipliers).max(initial=0.0)), 1e-300)
+        parts = self.parts(contact.multipliers)
+        for pair, terms, (p, q), own in zip(self.pairs, contact.terms, parts, states, strict=True):
+            if pair.tied:
+                continue
+            deep = terms.gap < -tolerance * self.system.length * pair.full
+            bad = (own == OPEN) & covered(terms.area, pair.full) & deep
+            bad |= (own != OPEN) & (p < -most)
+            if pair.rubs:
+                bad |= (own == SLIPPING) | (np.abs(q) > pair.friction * p + most)
+            if bad.any():
+                return False
+        return True
 
     def law_multipliers(self) -> Ints:
         """Multipliers that are pressures of laws."""

@@ -1,4 +1,4 @@
-"""Messages on contact: meshes before the run, failed increments, what gives way, missed peaks."""
+"""Messages on contact: meshes before the run, failed increments, what gives way or sinks in."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.gaps import SAME, WAITED, covered
 from corota.analysis.terms.contact.setup import core_of, of_lines
 from corota.analysis.terms.contact.surface import CORNER, NONE, blunt_turns, sharp_corners
@@ -18,8 +17,8 @@ from corota.model.contact import ContactPair, RigidCurve
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
+    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.contact.problem import ContactProblem
     from corota.mesh import Mesh
@@ -74,7 +73,7 @@ def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
             f"; {problem.pivoted} iterations chose the states of all contact nodes together "
             "(by pivoting), which did not converge either"
         )
-    return said + sunk_corner(problem.system)
+    return said + sunk_corner(problem.term)
 
 
 def _overcome(problem: ContactProblem, at: Evaluation) -> str:
@@ -290,13 +289,12 @@ def _ends(pair: Pair, x: Floats) -> Floats:
 NAMED = 0.1
 
 
-def sunk_corner(system: System) -> str:
+def sunk_corner(contact_term: ContactTerm) -> str:
     """Message on the deepest corner of a master inside a slave surface, or ''.
 
     A pressure law acts on areas, so that a corner has no constraint of its own: it can penetrate
     between two slave nodes until one of them is in contact with the side of the corner and jams.
     """
-    contact_term = system.term(ContactTerm)
     x = contact_term.positions(contact_term.u)[:, :2]
     worst, said = NAMED, ""
     for pair in contact_term.pairs:
@@ -339,14 +337,13 @@ def _depth(x: Floats, pair: Pair, corner: int) -> tuple[float, tuple[int, int]]:
 BETWEEN, UNHELD = 0.05, 0.02
 
 
-def sunk_between(system: System) -> list[str]:
+def sunk_between(contact_term: ContactTerm) -> list[str]:
     """Notes on pairs of bodies whose surfaces overlap between their constraints at the end.
 
     Mortar gaps are means over slave edges, and node-to-segment contact has the gaps of slave nodes:
     what is small beside a slave edge goes in between. Here the gaps of all nodes count.
     """
     notes: list[str] = []
-    contact_term = system.term(ContactTerm)
     if contact_term.at is None:
         return notes
     numbered, x = contact_term.system, contact_term.positions(contact_term.u)
@@ -395,54 +392,12 @@ def _deepest(pair: Pair, mesh: Mesh, x: Floats) -> tuple[float, int]:
     return worst, node
 
 
-#: Note alone: change of a force beside its largest value, relative to it, from which an increment
-#: may have missed the peak.
-STEEP = 0.05
-
-
-def pair_forces(pairs: list[ContactPair], scalars: dict[str, float]) -> list[float]:
-    """Size of the force of each pair [force] from the histories of an increment."""
-    along = ([scalars.get(f"{pair.name}: force {c}", 0.0) for c in "xy"] for pair in pairs)
-    return [float(np.hypot(x, y)) for x, y in along]
-
-
-def missed_peaks(
-    increments: list[tuple[int, float, list[float]]], pairs: list[ContactPair]
-) -> list[str]:
-    """Notes on largest forces of pairs beside which the force changes much in one increment.
-
-    Parameters
-    ----------
-    increments : list of tuple of int, float and list of float
-        Step, step time and :func:`pair_forces` of each increment of the static steps; in motion
-        the scheme bounds the error of an increment.
-    pairs : list of ContactPair
-    """
-    notes: list[str] = []
-    for k, pair in enumerate(pairs):
-        force = np.array([forces[k] for _, _, forces in increments])
-        i = int(np.argmax(force)) if len(force) else 0
-        if not 0 < i < len(force) - 1 or increments[i - 1][0] != increments[i + 1][0]:
-            continue
-        before, most, after = force[i - 1 : i + 2]
-        if most - min(before, after) > STEEP * most:
-            notes.append(
-                f"contact pair {pair.name!r}: the largest force, {most:.4g}, at step time "
-                f"{increments[i][1]:.4g} of step {increments[i][0]}, stands between {before:.4g} "
-                f"and {after:.4g} of the increments beside it, between which it may be larger: a "
-                "smaller largest_increment resolves the peak"
-            )
-    return notes
-
-
 __all__ = [
     "corner_note",
     "explanation",
     "fillet_note",
     "gives_way",
     "guided_round_note",
-    "missed_peaks",
-    "pair_forces",
     "partly_covered_note",
     "sunk_between",
     "sunk_corner",
