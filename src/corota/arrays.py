@@ -36,6 +36,3 @@ def distinct(values: ArrayLike) -> NDArray[Any]:
     first = np.ones(len(found), dtype=bool)
     np.not_equal(found[1:], found[:-1], out=first[1:])
     return found[first]
-
-
-__all__ = ["distinct"]

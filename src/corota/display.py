@@ -111,6 +111,3 @@ def picture(draw: Callable[[Path], Any]) -> str:
         except Exception:  # a representation must never raise
             return ""
     return f"<img style='max-width:100%' alt='' src='data:image/png;base64,{data}'/>"
-
-
-__all__ = ["Brief", "brief", "picture", "short", "table"]

@@ -33,6 +33,3 @@ def lazy(place: str) -> Callable[..., Any]:
 
     call.__name__ = call.__qualname__ = name
     return call
-
-
-__all__ = ["lazy"]

@@ -79,6 +79,3 @@ def choose(value: object, known: Iterable[str], what: str, where: Location | Non
         hint = did_you_mean(value, names) if isinstance(value, str) else ""
         raise InputError(f"no {what} {value!r}; there are {', '.join(names)}{hint}", where)
     return found
-
-
-__all__ = ["choose", "did_you_mean", "listed", "match"]

@@ -49,6 +49,3 @@ class Acceleration:
         share, *_ = np.linalg.lstsq(rows * changed, self.weights * du, rcond=DEPENDENT)
         out: Floats = du - (moved + changed) @ share
         return out
-
-
-__all__ = ["Acceleration"]

@@ -206,6 +206,3 @@ def replay(analysis: Analysis, begun: list[Begun]) -> None:
         system.mass = analysis.mass(number)
         system.conditions.end_time = start.ended
         system.begin(step, start.time, zero.copy(), None if start.first else zero)
-
-
-__all__ = ["Begun", "Checkpoint", "Resumption", "model_tree", "replay", "take"]

@@ -513,6 +513,3 @@ def _name(item: BodyForce) -> object:
     if isinstance(item.cells, str):
         return item.cells if item.cells != "all" else "", masses
     return np.asarray(item.cells).tobytes(), masses
-
-
-__all__ = ["DistributedLoad", "DistributedLoads"]

@@ -396,16 +396,3 @@ def evaluate(
     start = system.start
     i, j = start[rows // 3] + rows % 3, start[columns // 3] + columns % 3
     return system.from_nodes(force), (i, j, values)
-
-
-__all__ = [
-    "EMPTY",
-    "END_POINT",
-    "STATIC_MASS",
-    "BodyLoad",
-    "Distribution",
-    "LoadSum",
-    "Pressure",
-    "Traction",
-    "hydrostatic_thickness",
-]

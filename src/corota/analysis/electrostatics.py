@@ -186,6 +186,3 @@ def _facing(
     line = np.stack([0.5 - 0.5 * r, 0.5 + 0.5 * r, 0.0 * r], axis=-1)
     curve = np.stack([0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r], axis=-1)
     return opposite[edge], np.where(straight[..., None], line, curve)
-
-
-__all__ = ["ElectrostaticPressure"]

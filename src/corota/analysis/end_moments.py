@@ -80,6 +80,3 @@ def add_end_moments(
             bending = moment[:, None] * block.section.fiber / block.section.profile[1]
             for name, sign in (("SR1", 1.0), ("SL1", -1.0), ("SR2", 1.0), ("SL2", -1.0)):
                 own.values[name] = own.values[name] + sign * bending
-
-
-__all__ = ["add_end_moments"]

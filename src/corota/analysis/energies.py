@@ -311,6 +311,3 @@ class Balance:
                 "angular momentum": angular,
             }
         )
-
-
-__all__ = ["LARGE_ERROR", "TERMS", "Balance", "Energies"]

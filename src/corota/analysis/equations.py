@@ -452,6 +452,3 @@ class System(NumberedModel):
     def recover(self, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
         """Fields at the quadrature points, and sums over them."""
         return recover(self, self.elements.user, u)
-
-
-__all__ = ["System"]

@@ -93,6 +93,3 @@ class Evaluation:
     def reaction(self) -> Floats:
         """Residual with what dependent dofs pass on to their masters, shape (n_dofs,)."""
         return self.link.gather(self.residual)
-
-
-__all__ = ["Evaluation"]

@@ -10,6 +10,3 @@ class ElementFailure(Exception):
 
 class GiveUp(Exception):
     """No correction of this increment helps; a smaller increment may."""
-
-
-__all__ = ["ElementFailure", "GiveUp"]

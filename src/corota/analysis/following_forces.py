@@ -201,6 +201,3 @@ class TurningForce:
         out = np.zeros((len(self.system.model.mesh.points), 3))
         np.add.at(out[:, :2], self.nodes, force)
         return self.system.from_nodes(out)
-
-
-__all__ = ["FollowingTraction", "TurningForce", "edge_shapes"]

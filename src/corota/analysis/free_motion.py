@@ -173,6 +173,3 @@ def plain(modes: Floats, nothing: float = 1e-7) -> Floats:
         lead += 1
     rows[np.abs(rows) < 1e-2 * nothing] = 0.0
     return rows
-
-
-__all__ = ["describe", "name_motion", "plain"]

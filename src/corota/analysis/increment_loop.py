@@ -333,6 +333,3 @@ class NewtonStepper(ABC):
             if end:
                 raise ConvergenceError(self.refusal(attempt, end))
             loop.cut_back(control.number + 1, control.attempt - 1, attempt.reason, control.size)
-
-
-__all__ = ["Accepted", "Attempt", "IncrementLoop", "NewtonStepper", "Stepper"]

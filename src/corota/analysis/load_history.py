@@ -74,6 +74,3 @@ class LoadHistory:
         self.end[where] = value
         self.amplitude[where] = amplitude
         self.removed[where] = False
-
-
-__all__ = ["LoadHistory"]

@@ -48,6 +48,3 @@ def missed_peaks(
                 "smaller largest_increment resolves the peak"
             )
     return notes
-
-
-__all__ = ["missed_peaks", "pair_forces"]

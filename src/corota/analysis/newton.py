@@ -330,6 +330,3 @@ def _search(
             continue
         return trial, at, length
     return problem
-
-
-__all__ = ["Outcome", "ResidualNorms", "Settings", "larger", "newton"]

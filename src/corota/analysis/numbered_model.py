@@ -250,6 +250,3 @@ def _extent(points: Floats) -> Floats:
     """Extent along x and y of points of shape (2, n, ...): shape (2, ...)."""
     extent: Floats = points.max(axis=1) - points.min(axis=1)
     return extent
-
-
-__all__ = ["DOF_NAMES", "NumberedModel", "Role"]

@@ -279,6 +279,3 @@ class SmoothPath:
         constrained = np.stack([np.zeros_like(move), move], axis=1)
         x, _ = self.system.correct(at, rhs, constrained)
         return x[:, 0], x[:, 1]
-
-
-__all__ = ["NOT_CONSERVATIVE", "Metric", "PathSystem", "Point", "SmoothPath", "Tangent", "product"]

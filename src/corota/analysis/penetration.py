@@ -231,6 +231,3 @@ class PenetratingPressure:
         ends = self.opposite.nodes[:, :2]
         apart = np.linalg.norm(x[ends][:, :, None] - x[chain], axis=3)
         self.beside = self._wet_nodes[chain[apart.argmin(axis=2)]].all(axis=1)
-
-
-__all__ = ["Edges", "PenetratingPressure"]

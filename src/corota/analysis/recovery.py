@@ -133,6 +133,3 @@ def surface_stress(
         bending = values[f"M{name[-1]}"] * section.fiber / inertia
         found[name] = values["N"] / area + (bending if name[1] == "R" else -bending)
     return found
-
-
-__all__ = ["recover"]

@@ -64,5 +64,3 @@ class AtVelocity(Rule):
 
 #: Statics.
 REST = Rule()
-
-__all__ = ["REST", "AtVelocity", "Rule"]

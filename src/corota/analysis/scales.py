@@ -251,6 +251,3 @@ def _ratio(size: float, scale: float) -> float:
     if scale == 0.0:
         return 0.0 if size == 0.0 else np.inf
     return size / scale
-
-
-__all__ = ["Scales"]

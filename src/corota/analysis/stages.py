@@ -305,6 +305,3 @@ def _candidates(frame: Frame, averaging: Averaging, name: str) -> list[Floats]:
 def _goodman(stress: float, endurance: float, ultimate: float) -> float:
     """Used share of the line of Goodman for a stress between zero and a value."""
     return 0.5 * abs(stress) / endurance + 0.5 * max(stress, 0.0) / ultimate
-
-
-__all__ = ["StageRecorder", "condensed_stiffness"]

@@ -452,15 +452,3 @@ def _without_places(tree: Tree) -> Tree:
     if isinstance(tree, list):
         return [_without_places(v) for v in tree]
     return tree
-
-
-__all__ = [
-    "Reader",
-    "Unstorable",
-    "UnsuitableState",
-    "Writer",
-    "arrays_as_built",
-    "copies_as_built",
-    "dict_of",
-    "digest_of",
-]

@@ -394,6 +394,3 @@ def _copied(section: Section, cells: list[Ints], nodes: list[Ints], count: int) 
     for own in nodes:
         spread[own] = section.nodal_thickness
     return replace(section, cells=where, nodal_thickness=spread)
-
-
-__all__ = ["PeriodicCell"]

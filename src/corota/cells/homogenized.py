@@ -64,6 +64,3 @@ def ellipticity(tangent: ArrayLike) -> tuple[float, float]:
     least = np.linalg.eigvalsh(0.5 * (acoustic + acoustic.transpose(0, 2, 1)))[:, 0]
     at = int(np.argmin(least))
     return float(least[at]), float(angles[at])
-
-
-__all__ = ["elastic_constants", "ellipticity"]

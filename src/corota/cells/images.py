@@ -109,6 +109,3 @@ def add_images(
     labels = int(mesh.node_labels.max(initial=0)) + 1 + np.arange(len(new))
     mesh.node_labels = np.concatenate([mesh.node_labels, labels])
     return around, every[:, 0], every[:, 1:], of
-
-
-__all__ = ["add_images", "contact_nodes"]

@@ -164,6 +164,3 @@ def _grid(n: int) -> Floats:
         raise InputError(f"the grid of waves has at least one, not {n}")
     found = [(i, j) for i in range(n) for j in range(n) if (i, j) <= (-i % n, -j % n)]
     return np.array(found, float) / n
-
-
-__all__ = ["Onset", "find_onset"]

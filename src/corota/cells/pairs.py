@@ -139,6 +139,3 @@ def _reached(edges: list[Ints], free: Ints) -> Ints:
         more = [n for n in edges if np.isin(n, free).any()]
         free = np.unique(np.concatenate([free, *more]))
     return free
-
-
-__all__ = ["pair_nodes"]

@@ -147,6 +147,3 @@ def settle(state: State, u: Floats, time: float, beside: Floats | None = None) -
         if np.abs(change).max() <= SETTLED * np.abs(u).max():
             return replace(state, u=u, time=time, contact=(pressures, states))
     raise ConvergenceError(f"no equilibrium of the cell at the step time {time:.6g}")
-
-
-__all__ = ["Cell", "State", "point_of", "settle", "state_at"]

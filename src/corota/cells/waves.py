@@ -219,6 +219,3 @@ class Waves:
             squares = np.sort(eigsh(k, count, m, sigma=-SHIFT * highest)[0])
         out: Floats = np.sign(squares) * np.sqrt(np.abs(squares)) / (2.0 * math.pi)
         return out
-
-
-__all__ = ["Waves"]

@@ -227,6 +227,3 @@ def _turned(material: Any, path: Floats, plane: str) -> float:
     found = _respond(material, turn(path, 0.5), plane)["stress"]
     size = float(np.abs(stress).max()) or 1.0
     return float(np.abs(found - turn(stress, 1.0)).max()) / size
-
-
-__all__ = ["LawCheck", "check_material", "strain_paths"]

@@ -68,6 +68,3 @@ def refusal(model: Model) -> CorotaError | None:
         except CorotaError as error:
             return error
     return None
-
-
-__all__ = ["refusal"]

@@ -122,6 +122,3 @@ def _told(units: Units, modulus: float, density: float) -> Iterator[tuple[str, s
             "which no solid has",
             f"the units of the model are {units}",
         )
-
-
-__all__ = ["check_units", "yield_stress", "young"]

@@ -85,6 +85,3 @@ def _row(checked: LawCheck) -> str:
         f"asymmetry {shown(checked.asymmetry)}  objectivity {shown(checked.objectivity)}  "
         f"energy {shown(checked.energy)}  gained {shown(checked.created)}"
     )
-
-
-__all__ = ["run"]

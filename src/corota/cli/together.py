@@ -62,6 +62,3 @@ def _number(names: Sequence[str]) -> int:
     """Largest number that one of these variables has, 0 without."""
     found = [os.environ.get(name, "") for name in names]
     return max((int(text) for text in found if text.isdigit()), default=0)
-
-
-__all__ = ["together"]

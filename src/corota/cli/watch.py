@@ -140,6 +140,3 @@ def bars(residuals: list[float], levels: str) -> str:
         share = (min(max(power, LOWEST), HIGHEST) - LOWEST) / (HIGHEST - LOWEST)
         text += levels[min(int(share * len(levels)), len(levels) - 1)]
     return text
-
-
-__all__ = ["bars", "run", "tell_address"]

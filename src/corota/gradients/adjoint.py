@@ -580,6 +580,3 @@ def factor_rate(point: Point) -> Floats:
 
     slope, _ = derivative(residual, max(abs(increment.factor), 1.0))
     return slope
-
-
-__all__ = ["Adjoint", "FieldSums", "adjoints", "control_row", "controlled", "factor_rate"]

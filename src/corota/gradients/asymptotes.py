@@ -114,6 +114,3 @@ def _sides(low: float, high: float) -> list[tuple[float, float]]:
     """Sign and bound of the inequalities ``sign * (value - bound) <= 0``."""
     found = [(-1.0, low), (1.0, high)]
     return [(sign, bound) for sign, bound in found if math.isfinite(bound)]
-
-
-__all__ = ["Outcome", "moving_asymptotes"]

@@ -408,6 +408,3 @@ def _quadratic_slope(point: Point, shape: Floats) -> Floats:
         system.constraints.complete(u)
         total += weight / step * (_reduced(system, u, point.increment.time) @ shape)
     return total
-
-
-__all__ = ["BifurcationLoad", "Frequency", "LimitLoad"]

@@ -346,6 +346,3 @@ def _largest(mesh: Mesh) -> Mesh:
     graph = sp.coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(n, n))
     label = sp.csgraph.connected_components(graph, directed=False)[1][table[:, 0]]
     return _compact(mesh.points, table[label == np.bincount(label).argmax()])
-
-
-__all__ = ["Density", "optimize_density"]

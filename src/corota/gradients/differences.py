@@ -100,6 +100,3 @@ def step_between_kinks(n_state: int) -> float:
     float
     """
     return min(STEP, STATE_STEP / max(n_state, 1))
-
-
-__all__ = ["all_derivatives", "derivative", "step_between_kinks"]

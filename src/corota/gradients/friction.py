@@ -153,6 +153,3 @@ def by_start(
     finally:
         term.u = start
     return out
-
-
-__all__ = ["by_start", "solve", "surface_dofs"]

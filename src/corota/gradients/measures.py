@@ -590,21 +590,3 @@ class Stress(Measure):
         norm = self._norm(size, volume) or 1.0
         out: Floats = share * (size / norm) ** (self.p - 1.0)
         return out
-
-
-__all__ = [
-    "Area",
-    "Combination",
-    "Displacement",
-    "LoadFactor",
-    "Mass",
-    "Measure",
-    "Reaction",
-    "SpecialMeasure",
-    "StrainEnergy",
-    "Stress",
-    "Velocity",
-    "Width",
-    "combine",
-    "leaves",
-]

@@ -211,6 +211,3 @@ class Motion:
     def _product(self, matrix: Floats, z: Floats) -> Floats:
         columns = [self.system.product(matrix, np.ascontiguousarray(c)) for c in z.T]
         return np.stack(columns, axis=1)
-
-
-__all__ = ["Motion", "Rates", "refuse_motion"]

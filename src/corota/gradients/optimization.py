@@ -407,6 +407,3 @@ def _best(designs: Designs, constraints: Sequence[Constraint], unit: Floats) -> 
     if kept:
         return min(kept, key=lambda e: unit[0] * e.values[0])
     return good[int(np.argmin(excess))]
-
-
-__all__ = ["Constraint", "Design", "Designs", "Optimum", "optimize"]

@@ -142,6 +142,3 @@ def _outline(title: str, mesh: Mesh, low: Floats, size: Floats, scale: float) ->
         f'<p>{escape(title)}</p><svg viewBox="0 0 {WIDTH:.0f} {height:.0f}" role="img" '
         f'aria-label="{escape(title)}"><path d="{lines}" fill="none" stroke="{LINES[6]}"/></svg>'
     )
-
-
-__all__ = ["write_page"]

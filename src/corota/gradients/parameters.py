@@ -353,15 +353,3 @@ class Thickness(Field):
                 f"the gradient by thickness does not include {what}, which act on it: take "
                 "gradients.Attribute, which does"
             )
-
-
-__all__ = [
-    "Attribute",
-    "Constant",
-    "Field",
-    "Orientation",
-    "Parameter",
-    "Positions",
-    "Shape",
-    "Thickness",
-]

@@ -121,6 +121,3 @@ def reanalyze(
     tables = [f.pairs.get(CONTACT, f.C) for f in results.frames] if contact else []
     pressed = max((int((t[:, 0] > 0.0).sum()) for t in tables if t is not None), default=0)
     return Reanalysis(by_densities, by_body, mesh, pressed, results)
-
-
-__all__ = ["Reanalysis", "reanalyze"]

@@ -485,6 +485,3 @@ def value_and_grad(
     own = None if sizes is None else np.asarray(sizes, dtype=float)
     require_side(one_sided)
     return ValueAndGradient(build, measures, scalar, own, dict(options), memory, one_sided)
-
-
-__all__ = ["Run", "ValueAndGradient", "gradient", "value_and_grad"]

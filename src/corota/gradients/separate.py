@@ -102,6 +102,3 @@ class Separate:
             into[self.rows, k] += all_derivatives(value, BY_FLOW * size)
         if self.members:
             self.core.set_histories([self.histories.ravel()])
-
-
-__all__ = ["Separate", "fields_of"]

@@ -440,6 +440,3 @@ def _elastic(points: Floats, triangles: Ints, share: Floats) -> sp.csr_array:
     rows, columns = np.repeat(dofs, 6, axis=1).ravel(), np.tile(dofs, 6).ravel()
     n = 2 * len(points)
     return sp.coo_array((values.ravel(), (rows, columns)), shape=(n, n)).tocsr()
-
-
-__all__ = ["ShapeDesign", "shape"]

@@ -83,6 +83,3 @@ def one_sided(
         f"{name}: the measure has more kinks close to the {side} of the value; change the "
         "parameter or the load a little"
     )
-
-
-__all__ = ["one_sided", "require_side"]

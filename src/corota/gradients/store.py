@@ -98,6 +98,3 @@ class HistoryStore:
         self._file = self._file or _File()
         self.filed += size
         return _Filed(self._file, arrays)
-
-
-__all__ = ["HistoryStore"]

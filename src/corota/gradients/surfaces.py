@@ -259,15 +259,3 @@ def solve(
     right = RightHandSides(np.asfortranarray(rhs), np.asfortranarray(moved), np.zeros(rhs.shape[1]))
     z, y, _ = contact.solve(at, [s.copy() for s in surfaces.states], right)
     return z, y
-
-
-__all__ = [
-    "Surfaces",
-    "add_forces",
-    "evaluate",
-    "find",
-    "refuse_surfaces",
-    "residuals",
-    "slide",
-    "solve",
-]

@@ -347,6 +347,3 @@ def refuse(model: Model) -> None:
                 "gradients do not include materials in Python: their derivatives are not known",
                 section.where,
             )
-
-
-__all__ = ["Increment", "Point", "Trajectory", "increments_of", "refuse"]

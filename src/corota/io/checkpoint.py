@@ -300,6 +300,3 @@ def newest(path: Path) -> tuple[Saved, list[str]]:
     if not found:
         raise FileError(f"{path}: there is no checkpoint (JOB.ckpt) of this job; run it again")
     raise FileError("no checkpoint can be used; " + "; ".join(refused))
-
-
-__all__ = ["Saved", "candidates", "load", "newest", "rebuilt", "store"]

@@ -55,6 +55,3 @@ def store(group: Any, name: str, values: ArrayLike, level: int = 0) -> None:
     # HDF5 has no empty chunks.
     checked = {"chunks": data.shape, "fletcher32": True, **packed} if data.size else {}
     group.create_dataset(name, data=data, **checked)
-
-
-__all__ = ["fletcher32", "store"]

@@ -92,6 +92,3 @@ def contacts_of_results(file: Any) -> list[ContactPair]:
         settings["friction_steps"] = {int(k): _friction_of(mu) for k, mu in steps.items()}
         pairs.append(ContactPair(slave, master, name=str(own.attrs["name"]), **settings))
     return pairs
-
-
-__all__ = ["contacts_of_results", "store_contacts"]

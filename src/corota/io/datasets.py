@@ -144,6 +144,3 @@ class Series:
     def write_chunk(self, place: tuple[int, ...], data: bytes) -> None:
         """Write a chunk that is packed already, and has its checksum."""
         self._id.write_direct_chunk(place, data)
-
-
-__all__ = ["Series", "make_group", "store"]

@@ -35,6 +35,3 @@ def description_of_results(group: Any) -> dict[str, Any]:
         return {}
     found: dict[str, Any] = parse_json(bytes(group[NAME][:]))
     return found
-
-
-__all__ = ["description_of_results", "store_description"]

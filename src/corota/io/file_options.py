@@ -113,6 +113,3 @@ def from_keywords(options: dict[str, Any]) -> FileOptions:
         raise InputError(
             f"{error}; options are points, single, fields, compression, parts"
         ) from None
-
-
-__all__ = ["FIELDS", "FileOptions", "from_keywords", "wanted"]

@@ -78,6 +78,3 @@ class FolderLock:
         with contextlib.suppress(OSError):
             os.close(self._file)
         self._file = None
-
-
-__all__ = ["FolderLock"]

@@ -581,6 +581,3 @@ class JobFiles(BaseObserver):
     def _file(self, frame: Frame) -> None:
         for big in self._big:
             big.add(frame)
-
-
-__all__ = ["JobFiles"]

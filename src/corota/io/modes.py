@@ -89,6 +89,3 @@ def write_iterate(results: Results, path: Path) -> None:
     for frame in (results.frames[-1], results.last_iterate):
         writer.add(replace(frame, scalars={}, fields=[], V=None, A=None, C=None))
     writer.close({})
-
-
-__all__ = ["as_results", "write_iterate", "write_modes"]

@@ -165,6 +165,3 @@ def _array(name: str) -> tuple[str, str]:
     if column < 0:
         return array, ""
     return array, "XYZ"[column] if array.startswith("principal") else _COMPONENTS[column]
-
-
-__all__ = ["write_paraview"]

@@ -125,6 +125,3 @@ def write_provenance(folder: Path, name: str, files: Sequence[str | PathLike[str
     folder.mkdir(parents=True, exist_ok=True)
     replace_text(path, json.dumps(record, indent=2) + "\n")
     return path
-
-
-__all__ = ["changed_file", "sha256", "source_of", "write_provenance"]

@@ -101,6 +101,3 @@ def parse_json(text: str | bytes) -> Any:
         return json.loads(text)
     except RecursionError:
         raise ValueError("nested too deeply") from None
-
-
-__all__ = ["open_to_write", "parse_json", "read_bytes", "require_regular"]

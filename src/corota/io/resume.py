@@ -126,6 +126,3 @@ def files_of(saved: Saved, folder: str | PathLike[str] | None = None) -> JobFile
         source=options["source"],
         resume=saved,
     )
-
-
-__all__ = ["resume"]

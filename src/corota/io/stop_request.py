@@ -65,6 +65,3 @@ class StopRequest:
         """Remove the file."""
         with contextlib.suppress(OSError):
             self.path.unlink(missing_ok=True)
-
-
-__all__ = ["BEAT", "StopRequest", "request_stop", "stop_file"]

@@ -130,6 +130,3 @@ class TaskQueue:
             self._waiting -= done
             self._free.notify_all()
         self.seconds += time.thread_time() - begin
-
-
-__all__ = ["TaskQueue"]

@@ -160,6 +160,3 @@ def _as_meshio(found: _Found, path: str) -> Any:
         point_data={"node label": np.array(list(found.points), np.int64)},
         cell_data={"element label": labels},
     )
-
-
-__all__ = ["read_unv"]

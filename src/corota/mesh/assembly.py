@@ -87,6 +87,3 @@ def add_node(mesh: Mesh, x: float, y: float, name: str = "") -> int:
     if name:
         mesh.node_sets[name] = np.array([index])
     return index
-
-
-__all__ = ["add_node", "assembly"]

@@ -226,15 +226,3 @@ _MASKS: dict[str, Callable[..., Mask]] = {
     "inside": _inside,
     "on_circle": _on_circle,
 }
-
-
-__all__ = [
-    "inside",
-    "is_area",
-    "is_point",
-    "is_selection",
-    "near",
-    "on_circle",
-    "on_line",
-    "selected",
-]

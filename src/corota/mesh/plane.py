@@ -59,6 +59,3 @@ def into_plane(points: Floats, used: NDArray[np.bool_]) -> tuple[Floats, list[st
             notes.append(f"{letter} coordinates up to {largest:g} are taken as 0")
         return np.ascontiguousarray(points[:, list(axes)]), notes
     return None
-
-
-__all__ = ["into_plane"]

@@ -60,6 +60,3 @@ def random_field(mesh: Mesh, length: float, *, seed: int = 0) -> Floats:
     for wave, phase in zip(waves, phases, strict=True):
         field += np.cos(mesh.points @ wave + phase)
     return field * math.sqrt(2.0 / WAVES)
-
-
-__all__ = ["random_field"]

@@ -140,6 +140,3 @@ def _in_range(array: NDArray[Any], what: str, count: int | None, where: Location
         raise InputError(f"{what} index {low} is negative; indices count from 0", where)
     if count is not None and high >= count:
         raise InputError(f"no {what} with index {high}; there are {count}, counted from 0", where)
-
-
-__all__ = ["indices", "names", "one", "pairs"]

@@ -29,6 +29,3 @@ def shape_gradients(kind: str, at: Floats) -> Floats:
         lower = tuple((max(i - 1 + axis, 0), max(j - axis, 0)) for i, j in powers)
         parts.append(factor * monomials(at, lower) @ KINDS[kind].coefficients)
     return np.stack(parts, axis=1)
-
-
-__all__ = ["shape_functions", "shape_gradients"]

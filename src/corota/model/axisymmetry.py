@@ -152,6 +152,3 @@ def check_loads(loads: Iterable[object]) -> None:
                 f"has x = 0, not {item.value[1]:g}",
                 item.where,
             )
-
-
-__all__ = ["check_constraints", "check_loads", "guided", "is_axisymmetric", "nodes_on_axis"]

@@ -242,6 +242,3 @@ def _address(function: Any, where: Any) -> int:
             where,
         )
     return found
-
-
-__all__ = ["CompiledMaterial", "Umat", "find_umat"]

@@ -167,6 +167,3 @@ def rigid(nodes: str | ArrayLike, reference: int, name: str = "") -> Coupling:
     """All dofs of nodes in rigid motion with a reference node, in any rotation."""
     where = nodes if isinstance(nodes, str) else np.atleast_1d(np.asarray(nodes, np.int64))
     return Coupling(where, int(reference), name=name)
-
-
-__all__ = ["Constraint", "Coupling", "Equation", "LocalAxes", "StraightLine", "rigid"]

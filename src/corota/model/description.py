@@ -285,6 +285,3 @@ def rigid_curves(model: Model) -> list[dict[str, Any]]:
         }
         for curve in curves.values()
     ]
-
-
-__all__ = ["CURVE_POINTS", "CURVE_STRAIN", "describe", "hardening", "rigid_curves"]

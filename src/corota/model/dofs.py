@@ -56,6 +56,3 @@ def dof_indices(dofs: object, where: Location | None = None) -> tuple[int, ...]:
     if not isinstance(names, (list, tuple)) or not names:
         raise InputError(f"dofs are named as in 'x y rotation', not {dofs!r}", where)
     return tuple(dof_index(name, where) for name in names)
-
-
-__all__ = ["DOFS", "dof_index", "dof_indices"]

@@ -72,6 +72,3 @@ def groups_of_cells(mesh: Mesh, steps: Sequence[Changing]) -> Ints:
             inside[change.indices(mesh)] = 1
             group = np.unique(2 * group + inside, return_inverse=True)[1].reshape(-1)
     return group
-
-
-__all__ = ["ElementChange", "groups_of_cells"]

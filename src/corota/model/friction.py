@@ -159,14 +159,3 @@ def described(friction: Friction) -> str:
     if isinstance(friction, FrictionTable):
         return f"{min(row[0] for row in friction.rows):g} to {friction.largest:g} by a table"
     return f"{friction:g}"
-
-
-__all__ = [
-    "MOST_FRICTION",
-    "DecayingFriction",
-    "Friction",
-    "FrictionTable",
-    "coefficients",
-    "described",
-    "largest",
-]

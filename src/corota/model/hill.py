@@ -102,6 +102,3 @@ class Hill(Mises):
         back = [value for pair in self.back_stresses for value in pair]
         count = float(len(self.back_stresses))
         return [*(float(v) for v in ratios), count, *back, *self._hardening()]
-
-
-__all__ = ["Hill"]

@@ -742,16 +742,3 @@ def with_ratio(material: Any, nu: float) -> Any:
     if hasattr(material, "parent"):
         return replace(material, parent=with_ratio(material.parent, nu))
     return material.with_ratio(nu)
-
-
-__all__ = [
-    "ArrudaBoyce",
-    "Hyperelastic",
-    "Hyperfoam",
-    "MooneyRivlin",
-    "NeoHooke",
-    "Ogden",
-    "Polynomial",
-    "Yeoh",
-    "with_ratio",
-]

@@ -109,6 +109,3 @@ class VibrationAmplitude(Amplitude):
         """Displacement per unit of the table at a frequency; 0 at rest."""
         rate = 2.0 * np.pi * time
         return -super().__call__(time) / rate**2 if rate > 0.0 else 0.0
-
-
-__all__ = ["IntegratedAmplitude", "VibrationAmplitude"]

@@ -149,6 +149,3 @@ class JohnsonCook(LawOfTheCore):
         for own in lists:
             numbers += [float(len(own)), *(float(v) for v in own)]
         return numbers
-
-
-__all__ = ["JohnsonCook"]

@@ -49,6 +49,3 @@ def joined_nodes(model: Model) -> NDArray[np.bool_]:
             has[nodes] = True
             has[mesh.edge_set_nodes(edges)] = True
     return has
-
-
-__all__ = ["constrained_nodes", "joined_nodes"]

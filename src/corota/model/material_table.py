@@ -257,6 +257,3 @@ def _aligned(materials: list[Material], table: MaterialTable) -> list[Material]:
 def _voce(material: Mises) -> Voce:
     law = material.isotropic
     return law if isinstance(law, Voce) else Voce(0.0, 0.0, law)
-
-
-__all__ = ["MaterialTable"]

@@ -94,6 +94,3 @@ class Mullins(Hyperelastic):
         """Number of the parent, r, m, beta, parameters of the parent."""
         own = (float(PARENTS.index(self.parent.law)), float(self.r), float(self.m))
         return [*own, float(self.beta), *self.parent.parameters()]
-
-
-__all__ = ["Mullins"]

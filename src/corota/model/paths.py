@@ -220,6 +220,3 @@ class Modes(Brief):
     def __post_init__(self) -> None:
         if not len(self.growth):
             self.growth = np.zeros(len(self.factors))
-
-
-__all__ = ["ArcLength", "CriticalPoint", "DisplacementControl", "Label", "Modes"]

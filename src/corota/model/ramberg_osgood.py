@@ -116,6 +116,3 @@ class RambergOsgood(LawOfTheCore):
         """``E, nu, yield_stress, exponent, offset``."""
         numbers = (self.E, self.nu, self.yield_stress, self.exponent, self.offset)
         return [float(v) for v in numbers]
-
-
-__all__ = ["RambergOsgood"]

@@ -210,5 +210,3 @@ class Norton(Brief):
 
 #: Any of them.
 Rate = CowperSymonds | YieldRatio | RateCurves | Norton
-
-__all__ = ["CowperSymonds", "Norton", "Rate", "RateCurves", "YieldRatio"]

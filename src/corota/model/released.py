@@ -39,6 +39,3 @@ def without_releases(model: Model, steps: Sequence[Step]) -> tuple[Model, list[S
         new = step.new_supports or freed
         found.append(replace(step, new_supports=new, supports=acting if new else own))
     return same, found
-
-
-__all__ = ["without_releases"]

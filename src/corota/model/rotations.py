@@ -55,6 +55,3 @@ def without_rotation(mesh: Mesh, support: Fixed) -> str:
         f"rotation. Nodes of {known} and of beams have one, and reference nodes; other bodies "
         "are clamped by holding two nodes"
     )
-
-
-__all__ = ["reference_nodes", "rotating_nodes", "without_rotation"]

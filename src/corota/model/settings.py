@@ -54,6 +54,3 @@ class Settings(metaclass=_Ready):
             other, reset = self.excludes[name]
             given[other] = reset
         own.update(vars(type(self)(**given)))
-
-
-__all__ = ["Settings"]

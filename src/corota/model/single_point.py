@@ -145,6 +145,3 @@ class LawOfTheCore(SinglePoint, ABC):
         ax.set_ylabel("stress [force/length^2]")
         ax.set_title(self.name or "uniaxial answer")
         return ax
-
-
-__all__ = ["LawOfTheCore", "SinglePoint"]

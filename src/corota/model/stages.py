@@ -266,6 +266,3 @@ def _pair(values: ArrayLike) -> tuple[float, float]:
     if array.shape != (2,) or not np.isfinite(array).all():
         raise InputError(f"a point or a direction has two finite components, not {values!r}")
     return float(array[0]), float(array[1])
-
-
-__all__ = ["AXES", "FATIGUE", "Stage", "Stages"]

@@ -134,6 +134,3 @@ def _nodes(model: Model, where: str | Ints) -> tuple[Ints, bool]:
     if given.ndim == 1:
         return given, True
     return mesh.edge_set_nodes(given), False
-
-
-__all__ = ["straight"]

@@ -166,6 +166,3 @@ class Units:
 
     def __bool__(self) -> bool:
         return bool(str(self))
-
-
-__all__ = ["KNOWN", "Units"]

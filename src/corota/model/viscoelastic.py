@@ -234,6 +234,3 @@ class Viscoelastic(SinglePoint):
         for own in (self._parent_numbers(), [v for row in self.terms for v in row], shift):
             numbers += [float(len(own)), *(float(v) for v in own)]
         return numbers
-
-
-__all__ = ["WLF", "Viscoelastic"]

@@ -193,6 +193,3 @@ def _points(given: ArrayLike | Sequence[ArrayLike]) -> Floats:
     if at.ndim != 2 or at.shape[1] != 2 or not np.isfinite(at).all():
         raise InputError(f"points have shape (n, 2) and finite coordinates, not {given!r:.80}")
     return at
-
-
-__all__ = ["Curve", "arc", "bulge", "circle", "line", "polyline", "spline"]

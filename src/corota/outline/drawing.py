@@ -57,6 +57,3 @@ def set_name(name: str) -> str:
     'upper_leaf_0_5'
     """
     return re.sub(r"\W+", "_", name.strip()).strip("_") or "part"
-
-
-__all__ = ["DRAWINGS", "Drawing", "Text", "set_name"]

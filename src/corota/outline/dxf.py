@@ -186,6 +186,3 @@ def _tolerance(path: Any) -> float:
 
 def _xy(point: Any) -> tuple[float, float]:
     return float(point[0]), float(point[1])
-
-
-__all__ = ["read_dxf"]

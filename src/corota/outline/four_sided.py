@@ -85,6 +85,3 @@ def _counts(sides: list[Side], size: float) -> tuple[int, ...]:
     ]
     pair = (max(need[0], need[2]), max(need[1], need[3]))
     return pair * 2
-
-
-__all__ = ["mesh_four_sided"]

@@ -308,6 +308,3 @@ def _place(point: Floats) -> str:
 def _some(places: list[str]) -> str:
     more = f" and {len(places) - LISTED} more places" if len(places) > LISTED else ""
     return ", ".join(places[:LISTED]) + more
-
-
-__all__ = ["Loops", "OutlineError", "area", "clean", "contains"]

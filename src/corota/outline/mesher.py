@@ -258,6 +258,3 @@ def _mesh(
         if path is not None:
             copyfile(own, path)
         return read_gmsh(own)
-
-
-__all__ = ["outline"]

@@ -64,6 +64,3 @@ def _arcs(at: np.ndarray[Any, Any], turn: float, name: str) -> list[Curve]:
     sign = math.copysign(1.0, out[0] * after[1] - out[1] * after[0])
     start = math.atan2(out[1], out[0])
     return arc(center, float(np.hypot(*out)), start, start + sign * abs(turn), name, name)
-
-
-__all__ = ["SOLIDS", "read_faces"]

@@ -653,6 +653,3 @@ def _cross(a: Floats, b: Floats) -> Floats:
 
 def _left(way: Floats) -> Floats:
     return np.stack([-way[..., 1], way[..., 0]], axis=-1)
-
-
-__all__ = ["AROUND", "Faces", "Rays", "Side", "cut", "polygon", "sides_of"]

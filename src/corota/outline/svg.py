@@ -319,6 +319,3 @@ def _bezier(control: Floats) -> Floats:
     n = len(control) - 1
     weights = [math.comb(n, k) * t**k * (1.0 - t) ** (n - k) for k in range(n + 1)]
     return np.asarray(np.column_stack(weights) @ control)
-
-
-__all__ = ["read_svg"]

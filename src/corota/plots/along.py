@@ -58,6 +58,3 @@ def along(
         ax.ticklabel_format(style="sci", scilimits=(-3, 4))
         ax.set_title(line.results.model.name, loc="left")
         return finish(figure, path, dpi)
-
-
-__all__ = ["along"]

@@ -348,5 +348,3 @@ FORMATS: dict[str, Callable[[Iterator[Any], Path, int], None]] = {
     ".mp4": _mp4,
     ".html": _html,
 }
-
-__all__ = ["FORMATS", "animate", "moments", "require_ffmpeg"]

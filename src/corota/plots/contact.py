@@ -221,6 +221,3 @@ def _contours(results: Results, pair: ContactPair) -> list[tuple[Ints, Floats]]:
         way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
         runs.append((np.array(order, np.int64), way))
     return runs
-
-
-__all__ = ["contact_line", "status"]

@@ -287,6 +287,3 @@ def _three(
         panels[0].set_title(title, loc="left")
         figure.align_ylabels(panels)
         return finish(figure, path, dpi)
-
-
-__all__ = ["section_diagram", "section_forces", "section_history"]

@@ -44,6 +44,3 @@ def law_curves(checks: Sequence[LawCheck], path: str | PathLike[str] | None = No
     if path is not None:
         save(figure, path)
     return figure
-
-
-__all__ = ["law_curves"]

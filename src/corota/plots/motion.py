@@ -201,6 +201,3 @@ def energies(
             ax.ticklabel_format(style="sci", scilimits=(-3, 4), axis="y")
         upper.set_title(results.model.name, loc="left")
         return finish(figure, path, dpi)
-
-
-__all__ = ["energies", "modes", "response"]

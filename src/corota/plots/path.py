@@ -79,6 +79,3 @@ def draw_path(ax: Any, x: Floats, y: Floats, results: ResultSource, *, legend: b
             )
     if legend:
         ax.legend()
-
-
-__all__ = ["draw_path", "has_stability"]

@@ -458,6 +458,3 @@ def _trace(
     (back, a), (front, b) = halves
     points, values = back[:0:-1] + front, a[:0:-1] + b
     return np.array(points).reshape(-1, 2), np.array(values)
-
-
-__all__ = ["flow", "principal", "principal_axes"]

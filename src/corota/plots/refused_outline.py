@@ -52,6 +52,3 @@ def refused_outline(
         ax.set_xlabel("x")
         ax.set_ylabel("y")
         return finish(figure, path, dpi)
-
-
-__all__ = ["refused_outline"]

@@ -51,6 +51,3 @@ def draw_rigid(ax: Any, model: Model, frame: Frame | None = None, scale: float =
             bands.append(np.concatenate([points, (points + width * normal)[::-1]]))
         ax.add_collection(PolyCollection(bands, facecolors=STEEL, alpha=0.35, linewidths=0.0))
         ax.add_collection(LineCollection(lines, colors=STEEL, linewidths=1.3))
-
-
-__all__ = ["draw_rigid", "with_rigid"]

@@ -217,6 +217,3 @@ def view(
         return None
     viewer.controls()
     return viewer.plotter.show(title=results.model.name)
-
-
-__all__ = ["Viewer", "view"]

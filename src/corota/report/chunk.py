@@ -101,6 +101,3 @@ def rounded(values: NDArray[Any], bits: int = 14) -> NDArray[np.float32]:
     # Rounding up must not overflow the largest numbers.
     out: NDArray[np.float32] = np.where(np.abs(single) < 3e38, kept.view(np.float32), single)
     return out.astype(np.float32)
-
-
-__all__ = ["TYPES", "pack", "plain", "rounded", "unpack"]

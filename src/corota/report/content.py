@@ -473,6 +473,3 @@ def _pick(arrays: NodalArrays, wanted: list[int], count: int) -> list[int]:
         ends = []
     places = set(thinned(n, max(count - len(ends), 2)).tolist()) | set(ends)
     return sorted(places)
-
-
-__all__ = ["LIMIT", "Content", "content_of_job", "content_of_results", "thinned"]

@@ -112,6 +112,3 @@ def without_rounding(forces: Floats) -> Floats:
         part = size[:, columns]
         out[:, columns] = np.where(part < NO_FORCE * part.max(initial=0.0), 0.0, out[:, columns])
     return out
-
-
-__all__ = ["NodalArrays", "without_rounding"]

@@ -107,6 +107,3 @@ def page(content: Content | None, *, title: str = "", live: str = "") -> str:
 def _inside(text: str) -> str:
     """Text of a script that does not end the element it stands in."""
     return text.replace("</script", "<\\/script")
-
-
-__all__ = ["MODULES", "asset", "page", "script"]

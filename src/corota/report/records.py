@@ -289,15 +289,3 @@ def _version() -> str:
     from corota._core import __version__
 
     return __version__
-
-
-__all__ = [
-    "ITERATION",
-    "JobPaths",
-    "JobRecords",
-    "Records",
-    "Tail",
-    "find_job",
-    "records_of_files",
-    "records_of_results",
-]

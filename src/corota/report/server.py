@@ -274,6 +274,3 @@ class PageServer(ThreadingHTTPServer):
         limit = time.monotonic() + seconds
         while (now := time.monotonic()) < limit and now - self._last < STILL_ASKING:
             time.sleep(0.1)
-
-
-__all__ = ["JobWatch", "PageServer"]

@@ -128,6 +128,3 @@ def to_dataframe(results: ResultSource, histories: Sequence[History | str]) -> A
         labels = {name: units.label(vf.dimension(name)) for name in every}
         table.attrs["units"] = {name: label for name, label in labels.items() if label}
     return table
-
-
-__all__ = ["require", "to_dataframe", "to_xarray"]

@@ -121,6 +121,3 @@ def fit_rigid_motion(points: Floats, U: Floats, UR: Floats) -> BodyMotion:
     error = moved - np.einsum("ijf,nj->fni", turn, arms)
     distortion = np.sqrt((error**2).sum(axis=2).mean(axis=1))
     return BodyMotion(center, translation, np.unwrap(angle), distortion)
-
-
-__all__ = ["BodyMotion", "fit_rigid_motion"]

@@ -69,6 +69,3 @@ def add_derived(block: PointValues) -> None:
                 f"point: {block.volume.shape}"
             )
         block.values[name] = values
-
-
-__all__ = ["DERIVED", "Derived", "PointValues", "add_derived"]

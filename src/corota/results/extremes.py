@@ -223,16 +223,3 @@ def _at_nodes(results: ResultSource, frame: Frame, name: str, index: int) -> Ext
         for value, node in (min(found, key=lambda f: f[0]), max(found, key=lambda f: f[0]))
     )
     return Extremes(name, "nodes", low, high)
-
-
-__all__ = [
-    "WIDTH",
-    "Extreme",
-    "Extremes",
-    "extremes",
-    "extremes_of_row",
-    "no_points",
-    "places_of",
-    "row_of",
-    "rows_of",
-]

@@ -136,6 +136,3 @@ class Frame(Brief):
     cells_with: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
     absent: frozenset[str] = frozenset()
     H: Floats | None = None
-
-
-__all__ = ["Frame", "PointFields"]

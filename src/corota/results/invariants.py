@@ -100,5 +100,3 @@ OF_STRESS = (
     Invariant("TRIAX", "stress triaxiality", triaxiality, "triaxiality", dimension=""),
 )  # fmt: skip
 OF_STRAIN = _principal("E", "strain")
-
-__all__ = ["OF_STRAIN", "OF_STRESS", "Invariant", "mises", "principal", "tresca", "triaxiality"]

@@ -610,6 +610,3 @@ def table() -> list[str]:
     """The table of the documents: name, meaning, dimension."""
     rows = ["| measure | meaning | dimension |", "| --- | --- | --- |"]
     return rows + [f"| `{name}` | {m.meaning} | {m.dimension} |" for name, m in MEASURES.items()]
-
-
-__all__ = ["MEASURES", "StageMeasure", "StagePath", "measure_values", "stage_measure", "table"]

@@ -112,6 +112,3 @@ def members(results: ResultSource, cells: str | ArrayLike | None, frame: int) ->
         for name in ("N", "V", "M1", "M2")
     )
     return Members(results, frame, found, pairs, n, v, np.stack([m1, m2], axis=1))
-
-
-__all__ = ["Members", "members"]

@@ -288,6 +288,3 @@ def chained(mesh: Mesh, edges: Ints) -> Ints:
 
 def _pandas() -> Any:
     return import_module("pandas")
-
-
-__all__ = ["Interpolation", "Line", "Place", "chained", "line", "place"]

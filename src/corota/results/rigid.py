@@ -55,6 +55,3 @@ def moved(model: Model, curve: RigidCurve, frame: Frame | None, scale: float = 1
     at = model.mesh.points[reference]
     rotation = np.array([[c, s], [-s, c]])
     return [(p - at) @ rotation + at + scale * frame.U[reference] for p in lines]
-
-
-__all__ = ["moved", "rigid_curves", "rigid_lines"]

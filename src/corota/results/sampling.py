@@ -62,6 +62,3 @@ def sampled(
     values = onto(results.nodal(name, frame, section))
     # Parabolas through nodal values may be negative where the variable is not.
     return np.maximum(values, 0.0) if name in POSITIVE else values
-
-
-__all__ = ["sampled"]

@@ -149,6 +149,3 @@ def table() -> list[str]:
         shown = meaning.replace("energy balance", "[energy balance](energy.md)")
         rows.append(f"| `{name}` | {shown} | {dimension} |")
     return rows
-
-
-__all__ = ["OF_FRAMES", "SCALARS", "general", "table", "where_missing"]

@@ -578,6 +578,3 @@ def diagram(
     found = [Cut(results, p - a, p + a).forces(frame) for p, a in zip(x, across, strict=True)]
     table = np.array([[f.N, f.V, f.M] for f in found])
     return SectionDiagram(results, at, *table.T)
-
-
-__all__ = ["Cut", "SectionDiagram", "SectionForces", "diagram"]

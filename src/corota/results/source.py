@@ -54,6 +54,3 @@ class ResultSource(Protocol):
     def history(self, name: str, at: Any = None) -> Any: ...
 
     def to_dataframe(self, *histories: Any) -> Any: ...
-
-
-__all__ = ["ResultSource"]

@@ -201,6 +201,3 @@ def stage_results(results: ResultSource, name: str) -> StageResults:
     reference = np.array([column("place x")[0], column("place y")[0]]) - motion[0, :2]
     stiffness = np.moveaxis(np.array(rows), 2, 0)
     return StageResults(name, reference, motion, force, stiffness, column("travel"), column("load"))
-
-
-__all__ = ["PseudoRigidBody", "StageResults", "stage_results"]

@@ -259,8 +259,3 @@ POSITIVE = frozenset(
     + [row.size[0] for row in _ROWS if row.size[0]]
     + [name for name, (_, item) in INVARIANTS.items() if item.positive]
 )
-
-__all__ = [
-    "COMPONENTS", "CONTACT", "DIMENSIONS", "HARMONIC", "INVARIANTS", "MEANING", "NODAL", "POSITIVE",
-    "TABLE", "TENSORS", "Variable", "markdown", "requests", "variables",
-]  # fmt: skip

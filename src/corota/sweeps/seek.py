@@ -191,6 +191,3 @@ def _search(
         lambda value: ends[value] if value in ends else error_at(value),
         low, high, xtol=1e-12 * (high - low), rtol=1e-12, maxiter=MOST_RUNS, disp=False,
     )  # fmt: skip
-
-
-__all__ = ["Sought", "seek"]

@@ -35,6 +35,3 @@ class Outcome:
     def ok(self) -> bool:
         """Whether there are values and all are within their tolerances."""
         return not self.error and bool(self.values) and all(v.ok for v in self.values)
-
-
-__all__ = ["Outcome"]

@@ -389,6 +389,3 @@ class Constraints:
                 "carry a force",
                 where,
             )
-
-
-__all__ = ["Constraints", "LinearizedConstraints"]

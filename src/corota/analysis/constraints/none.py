@@ -118,6 +118,3 @@ def constraints_of(
     if model.constraints or model.axes:
         return Constraints(model, start, carried, matrix)
     return NoConstraints(start, matrix)
-
-
-__all__ = ["IDENTITY", "Identity", "NoConstraints", "constraints_of"]

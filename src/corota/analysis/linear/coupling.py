@@ -48,6 +48,3 @@ class Coupling:
     diagonal: Floats
     force: Floats
     near: Callable[[], tuple[Ints, Ints]]
-
-
-__all__ = ["Coupling"]

@@ -202,6 +202,3 @@ def _first(values: Complex, x: Complex, count: int) -> tuple[Complex, Complex]:
     chosen |= growing
     order = order[chosen[order]]
     return values[order], x[:, order]
-
-
-__all__ = ["quadratic_modes", "symmetric_modes", "unsymmetric_modes"]

@@ -98,6 +98,3 @@ def _is_null(matrix: Sparse, mode: Floats) -> bool:
     v = np.asarray(mode, float).reshape(matrix.shape[0], -1)[:, 0]
     left, size = np.abs(matrix @ v), abs(matrix) @ np.abs(v)
     return bool(left.max() <= NULL * size.max())
-
-
-__all__ = ["Factor"]

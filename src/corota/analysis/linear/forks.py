@@ -50,5 +50,3 @@ if hasattr(os, "register_at_fork"):
         after_in_parent=unforked.after,
         after_in_child=unforked.after_in_child,
     )
-
-__all__ = ["unforked"]

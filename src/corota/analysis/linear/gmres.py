@@ -109,6 +109,3 @@ def _turned(column: list[float], turns: list[tuple[float, float]]) -> tuple[list
 
 def _length(a: Floats) -> float:
     return math.sqrt(a @ a)
-
-
-__all__ = ["gmres"]

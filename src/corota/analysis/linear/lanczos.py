@@ -128,6 +128,3 @@ def _orthonormal(block: Floats, image: Floats, least: float) -> tuple[Floats, Fl
     root = np.sqrt(values[kept])
     turn = (vectors[:, kept] / root).T
     return turn @ block, turn @ image, (vectors[:, kept] * root).T
-
-
-__all__ = ["BLOCK", "largest"]

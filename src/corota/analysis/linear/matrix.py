@@ -250,6 +250,3 @@ class AssembledPattern(SymmetricPattern):
 def _columns(x: Floats) -> list[Floats]:
     """Views of the columns of a vector or matrix."""
     return [x] if x.ndim == 1 else list(x.T)
-
-
-__all__ = ["AssembledPattern", "SymmetricPattern"]

@@ -162,6 +162,3 @@ class PetscMultigrid(Petsc):
     def _refined(self, x: Floats, b: Floats) -> Floats:
         """The iteration has its own measure of the residual."""
         return x
-
-
-__all__ = ["PetscMultigrid"]

@@ -371,6 +371,3 @@ def _inverse_power(size: Floats) -> Floats:
     """Power of two next to the inverse of sizes; 1 for what is zero."""
     known = size > 0.0
     return np.where(known, np.exp2(-np.round(np.log2(np.where(known, size, 1.0)))), 1.0)
-
-
-__all__ = ["Petsc", "load_petsc"]

@@ -193,6 +193,3 @@ def _others(keys: Ints, known: Ints) -> Ints:
     inside = place < len(known)
     found[inside] = known[place[inside]] == keys[inside]
     return keys[~found]
-
-
-__all__ = ["Rows"]

@@ -492,6 +492,3 @@ class SaddlePointSystem:
         if min(tangent, border) > 0.0:
             scale[self.nf :] = 2.0 ** round(math.log2(tangent / border))
         return scale
-
-
-__all__ = ["SaddlePointSystem"]

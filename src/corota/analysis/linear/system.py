@@ -88,6 +88,3 @@ class LinearSystem:
         with self.timed("solve"):
             x: Floats = self.last.solve(rhs)
         return x
-
-
-__all__ = ["LinearSystem"]

@@ -77,6 +77,3 @@ def arrays_of(matrix: Sparse | sp.coo_array[np.float64]) -> list[Index | Floats]
     coo = matrix.format == "coo"
     names = ("row", "col", "data") if coo else ("indptr", "indices", "data")
     return [getattr(matrix, name) for name in names]
-
-
-__all__ = ["Triplets", "arrays_of", "nonempty_columns"]

@@ -130,6 +130,3 @@ def diagonal_of(matrix: Sparse) -> NDArray[np.bool_]:
     has = np.zeros(matrix.shape[0], bool)
     has[rows[rows == columns]] = True
     return has
-
-
-__all__ = ["FullMatrix", "MaskedLu"]

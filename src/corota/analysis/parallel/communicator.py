@@ -113,6 +113,3 @@ def separate_runs() -> Iterator[None]:
 def runs_are_separate() -> bool:
     """Whether each process runs its own analyses."""
     return _separate.get()
-
-
-__all__ = ["ALONE", "Communicator", "runs_are_separate", "separate_runs"]

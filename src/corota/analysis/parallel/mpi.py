@@ -182,6 +182,3 @@ def _join(group: list[PointFields]) -> PointFields:
         None if one.forces is None else put([g.forces for g in group if g.forces is not None]),
         None if one.fibers is None else put([g.fibers for g in group if g.fibers is not None]),
     )
-
-
-__all__ = ["Processes", "processes"]

@@ -110,6 +110,3 @@ def bisected(places: Floats, work: Floats, count: int) -> Ints:
         waiting.append((np.sort(order[:cut]), first, left))
         waiting.append((np.sort(order[cut:]), first + left, groups - left))
     return part
-
-
-__all__ = ["bisected", "own_blocks", "partition", "process_of_cells"]

@@ -283,6 +283,3 @@ def _symmetric(system: System, at: Evaluation, dead: list[str] | None) -> Evalua
             "(non-conservative: use dynamics; dead_loads=True keeps their directions)"
         )
     return replace(at, load_stiffness=None)
-
-
-__all__ = ["buckle_step"]

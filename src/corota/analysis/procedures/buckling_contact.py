@@ -129,6 +129,3 @@ def _change(base: Linearized, z: Floats, loads: Conditions, moved: float) -> NDA
         change = change + base.padded(base.reduce(own, triplets))
     found: NDArray[np.float64] = change.tocsc()
     return found
-
-
-__all__ = ["factors_with_contact"]

@@ -138,6 +138,3 @@ def _turned(arm: Floats, angle: float) -> Floats:
     c, s = np.cos(angle), np.sin(angle)
     out: Floats = arm @ np.array([[c, s], [-s, c]])
     return out
-
-
-__all__ = ["carried_bodies"]

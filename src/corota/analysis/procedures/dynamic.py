@@ -438,6 +438,3 @@ def _local_error(
 def _largest(vectors: Floats) -> float:
     """Largest length of the vectors of nodes, whatever the axes."""
     return float(np.hypot(*vectors.T).max())
-
-
-__all__ = ["DynamicStepper", "dynamic_step", "warn_of_long_increments"]

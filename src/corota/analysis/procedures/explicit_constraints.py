@@ -233,6 +233,3 @@ class ReducedMass(FreeMass):
 def mass_of(system: System, mass: Floats, u: Floats) -> FreeMass:
     """The mass that central differences accelerate, at a displacement."""
     return ReducedMass(system, mass, u) if system.link.couples else FreeMass(system, mass)
-
-
-__all__ = ["FreeMass", "ReducedMass", "mass_of"]

@@ -90,6 +90,3 @@ class FreeFlight:
         flown[self.nodes, 2] = turn[body]
         guess: Floats = u + system.from_nodes(flown)
         return guess
-
-
-__all__ = ["FreeFlight"]

@@ -209,6 +209,3 @@ def _participation(lin: LinearMotion, shapes: Floats) -> dict[str, float]:
             scalars[f"participation {name} {k}"] = float(value)
         scalars[f"moving mass {name}"] = float(rigid @ force)
     return scalars
-
-
-__all__ = ["frequency_step"]

@@ -307,6 +307,3 @@ def _resonance(step: Step, number: int, w: float) -> _Resonance:
         "damping",
         step.where,
     )
-
-
-__all__ = ["steady_state_step"]

@@ -126,6 +126,3 @@ def _combine(base: PointFields, ahead: PointFields, behind: PointFields, h: floa
 def _second(base: Floats | float, ahead: Floats | float, behind: Floats | float, h: float):  # type: ignore[no-untyped-def]
     """Expansion to second order from values a step ahead and behind."""
     return base + (ahead - behind) / (2.0 * h) + (ahead - 2.0 * base + behind) / (2.0 * h * h)
-
-
-__all__ = ["LinearFields"]

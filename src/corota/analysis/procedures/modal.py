@@ -277,6 +277,3 @@ def _tell_lost(system: System, state: State, number: int, start: Floats, kept: F
             f"the modes hold all but {lost / size:.0%} of the displacement that step {number} "
             "starts from: request more modes"
         )
-
-
-__all__ = ["leave", "linear_evaluation", "modal_step", "supported"]

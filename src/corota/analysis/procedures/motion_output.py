@@ -73,6 +73,3 @@ class EndForces:
         self.at = Evaluation(internal, external, internal, np.empty(0), None, link)
         whole = link.gather(internal + inertia - external)
         self.reaction = np.where(system.conditions.constrained, whole, 0.0)
-
-
-__all__ = ["EndForces"]

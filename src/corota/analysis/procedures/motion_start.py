@@ -206,6 +206,3 @@ def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
             "nodes it depends on too (a reference node has a rotation, dof 6 in decks)",
             next((item.where for item in system.model.velocities if item.where), None),
         )
-
-
-__all__ = ["check_density", "initial_velocity", "resting", "start_motion"]

@@ -269,6 +269,3 @@ def damping_ratios(given: ModalDamping, count: int) -> Floats:
     for first, last, share in given:
         out[int(first) - 1 : int(last)] = float(share)
     return out
-
-
-__all__ = ["Patterns", "Reduced", "damping_ratios", "last_modes"]

@@ -39,6 +39,3 @@ def deformation(reference: Floats, x: Floats, finite: bool = True) -> Floats:
     size = np.hypot(along, across) or 1.0
     out: Floats = now - (along * before + across * _skew(before)) / size
     return out
-
-
-__all__ = ["deformation", "rigid_rates"]

@@ -618,6 +618,3 @@ def _continued(report: Report | None, before: int, how: str) -> Report | None:
         report(before + iteration, norms, correction, "; ".join(filter(None, [how, note])))
 
     return continued
-
-
-__all__ = ["StaticStepper", "static_step"]

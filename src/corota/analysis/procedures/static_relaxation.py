@@ -139,6 +139,3 @@ class _Sizes:
                     yield middle, rung.motion
                     low, high = (middle, high) if self.nothing_closed else (low, middle)
                 low = 0.0
-
-
-__all__ = ["LADDER", "by_relaxation"]

@@ -175,6 +175,3 @@ def explanation(
         where + ". All converged increments are kept; the last attempt "
         "is results.last_iterate (corota plot JOB.vtkhdf --last-iterate)"
     )
-
-
-__all__ = ["at_limit", "collapse", "driven", "explanation", "plateau", "remedies", "unstable"]

@@ -134,6 +134,3 @@ def relaxing_note(system: NumberedModel) -> str:
     if not any(_relaxes(b) for b in system.blocks):
         return ""
     return "of viscoelastic materials the instantaneous moduli count"
-
-
-__all__ = ["ComplexStiffness", "relaxing_note"]

@@ -475,6 +475,3 @@ class Conditions(Term):
         self.distributed.set(
             [item for item in loads if not isinstance(item, Temperature)], self.factors.index
         )
-
-
-__all__ = ["Conditions"]

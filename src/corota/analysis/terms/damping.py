@@ -126,6 +126,3 @@ def _mass(system: System, u: Floats, kind: str) -> Floats:
     force, scale = np.zeros((2, system.n_dofs))
     system.core.inertia(here, rest, rest, kind, [0.0, 0.0, 1.0], force, scale, values)
     return values
-
-
-__all__ = ["Damping", "damping_matrix", "mass_damping", "material_pairs"]

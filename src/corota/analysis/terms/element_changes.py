@@ -127,6 +127,3 @@ class ElementChanges:
         here = np.ascontiguousarray(system.in_space(u))
         system.core.assemble(here, system.nlgeom, force, scale, np.empty(0), system.about_linear)
         return system.at_nodes(force)
-
-
-__all__ = ["ElementChanges"]

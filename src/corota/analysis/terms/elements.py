@@ -233,6 +233,3 @@ class Elements(Term):
         self.system.core.commit()
         self.user.commit()
         self.reached = self.seen
-
-
-__all__ = ["Elements"]

@@ -198,6 +198,3 @@ def add_kinetic(
         volume = block.volume.sum(axis=1)
         density = np.divide(each, volume, out=np.zeros_like(each), where=volume > 0.0)
         block.values["EKEDEN"] = np.repeat(density[:, None], block.volume.shape[1], axis=1)
-
-
-__all__ = ["Inertia", "MotionState", "add_kinetic"]

@@ -389,6 +389,3 @@ def spin(system: System) -> float:
             "centrifugal load to the whole model"
         )
     return float(sum(rates))
-
-
-__all__ = ["LinearMotion", "Linearized", "spin"]

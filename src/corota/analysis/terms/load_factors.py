@@ -110,6 +110,3 @@ class LoadFactors:
             known = ", ".join(self.names[1:]) or "none"
             raise ModelError(f"no amplitude named {name!r}; there are: {known}", where)
         return self.names.index(name)
-
-
-__all__ = ["LoadFactors"]

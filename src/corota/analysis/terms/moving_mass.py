@@ -55,6 +55,3 @@ def masses_of_steps(steps: Sequence[Step]) -> list[MovingMass]:
         else:
             found.append(MovingMass() if modes is None else MovingMass(modes.mass))
     return found[::-1]
-
-
-__all__ = ["MovingMass", "masses_of_steps"]

@@ -118,6 +118,3 @@ class NodalForces:
             raise ModelError(f"node {label} {what}", item.where)
         self.system.constraints.refuse_loaded(dofs, item.where)
         return dofs
-
-
-__all__ = ["NodalForces"]

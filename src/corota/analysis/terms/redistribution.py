@@ -163,6 +163,3 @@ def _kept(before: Floats, after: Floats) -> tuple[Floats, tuple[float, float]]:
         factors = np.ones(len(after))
     left = (want - factors @ have) / total[0]
     return factors, (float(np.hypot(*left[1:3])), float(abs(left[3])))
-
-
-__all__ = ["massless_nodes", "set_moving_mass"]

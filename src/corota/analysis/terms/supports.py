@@ -271,6 +271,3 @@ class Supports:
         """Indices of the amplitudes that move supports."""
         used = np.bincount(self.history.amplitude[self.constrained])
         return [i for i, count in enumerate(used.tolist()) if i and count]
-
-
-__all__ = ["Supports"]

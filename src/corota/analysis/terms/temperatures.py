@@ -89,6 +89,3 @@ class Temperatures:
             own = table.time - start
             times |= set(own[(own > 0.0) & (own < period)].tolist())
         return any(not np.array_equal(self.at(t), self.history.begin) for t in times)
-
-
-__all__ = ["Temperatures"]

@@ -187,6 +187,3 @@ class Term(Protocol):
 #: User-defined terms: each entry gives the term of a model, or ``None`` where it has none. They
 #: act on displacements and velocities, in every scheme and in all linear procedures.
 TERMS: dict[str, Callable[[NumberedModel], Term | None]] = {}
-
-
-__all__ = ["TERMS", "StatePoint", "Term", "TermOutput"]

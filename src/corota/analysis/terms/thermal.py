@@ -441,6 +441,3 @@ def _nodes(model: Model, where: str | Ints) -> Ints | slice:
     if isinstance(where, str):
         return model.mesh.nodes_of(where) if where else slice(None)
     return where
-
-
-__all__ = ["FreeStrains", "start_temperatures"]

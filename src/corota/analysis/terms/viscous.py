@@ -199,6 +199,3 @@ def _change(block: _Block, begin: Floats, end: Floats, v: Floats, dt: float) -> 
 def _skew(v: Floats) -> Floats:
     """Vectors rotated by a right angle, shape (..., 2)."""
     return np.stack([-v[..., 1], v[..., 0]], axis=-1)
-
-
-__all__ = ["ViscousElements"]

@@ -77,6 +77,3 @@ class Curve:
             gap = 1e-3 * later[1]
             time, value = np.append([start - gap], time), np.append([first], value)
         return Amplitude(time, value, self.total, self.name, self.where)
-
-
-__all__ = ["Curve", "smooth_steps"]

@@ -588,34 +588,3 @@ class TieDraft:
     angle: float = 0.0
     center: tuple[float, float] | None = None
     ready: bool = False
-
-
-__all__ = [
-    "AttachedDraft",
-    "BehaviorDraft",
-    "ConnectorDraft",
-    "DistributionDraft",
-    "Draft",
-    "ElementBlock",
-    "Entry",
-    "GeneralDraft",
-    "InitialDraft",
-    "Instance",
-    "InteractionDraft",
-    "LineDraft",
-    "MassScalingDraft",
-    "MaterialDraft",
-    "NamedSet",
-    "NodeBlock",
-    "PairDraft",
-    "PlasticDraft",
-    "PretensionDraft",
-    "ReleaseDraft",
-    "Scope",
-    "SectionDraft",
-    "StartDraft",
-    "StepDraft",
-    "Surface",
-    "SurfaceRow",
-    "TieDraft",
-]

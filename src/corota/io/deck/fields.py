@@ -140,6 +140,3 @@ def _mixed(low: list[Row], high: list[Row], share: float) -> list[Row]:
             fields.append(one if x == y else repr((1.0 - share) * x + share * y))
         found.append(replace(a, fields=fields))
     return found
-
-
-__all__ = ["find_fields", "pick_rows"]

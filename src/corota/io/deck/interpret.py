@@ -120,6 +120,3 @@ def _pretty(hint: str) -> str:
         if hint == f"did you mean {plain}?":
             return f"did you mean *{SPELLED.get(plain, plain)}?"
     return hint
-
-
-__all__ = ["interpret"]

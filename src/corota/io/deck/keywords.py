@@ -421,5 +421,3 @@ KEYWORDS: dict[str, Keyword] = {key(name): keyword for name, keyword in _TABLE.i
 
 #: Usual spelling of names of several words.
 SPELLED = {key(name): name for name in _TABLE}
-
-__all__ = ["KEYWORDS", "SPELLED", "Keyword"]

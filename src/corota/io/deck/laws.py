@@ -236,6 +236,3 @@ def law_cards(material: Material, number: Callable[[float], str]) -> str | None:
             rows[-1].append(number(temperature))
         text += "".join(", ".join(row) + "\n" for row in rows)
     return text
-
-
-__all__ = ["LAWS", "DeckLaw", "law_cards"]

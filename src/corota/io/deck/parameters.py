@@ -194,6 +194,3 @@ def _limited(value: Value) -> Value:
     elif not abs(value) < _LARGEST:
         raise ValueError("the number is too large")
     return value
-
-
-__all__ = ["Parameters"]

@@ -269,14 +269,3 @@ WITHOUT_EFFECT: dict[tuple[str, str], str] = {
     **{(keyword, "DEPENDENCIES"): "0" for keyword in ("CYCLICHARDENING", "FRICTION", *LAWS)},
     ("RATEDEPENDENT", "EXTRAPOLATION"): "CONSTANT",
 }
-
-__all__ = [
-    "HEAT",
-    "IGNORED",
-    "LABELS",
-    "PLASTIC",
-    "PROCEDURE",
-    "REFUSED_PARAMETERS",
-    "UNSUPPORTED",
-    "WITHOUT_EFFECT",
-]

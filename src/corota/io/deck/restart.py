@@ -136,6 +136,3 @@ def _earlier_deck(saved: Saved) -> Path:
         f"{places[0]}: the deck of the earlier job, or a file that it includes, is not there or "
         f"has changed since {saved.path} was written"
     )
-
-
-__all__ = ["card_that_reads", "with_earlier_steps"]

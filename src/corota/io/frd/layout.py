@@ -89,9 +89,3 @@ def blocks() -> list[Block]:
     known = ("PE", "ENER")  # as CalculiX orders them
     scalars.sort(key=lambda block: known.index(block.name) if block.name in known else len(known))
     return [*first, *scalars[:2], CONTACT, *scalars[2:], *SURFACES.values()]
-
-
-__all__ = [
-    "CONTACT", "DISP", "ELEMENTS", "FORC", "NAMES", "NDTEMP", "NODES", "PDISP", "STRESS",
-    "SURFACES", "TOSTRAIN", "VELO", "Block", "blocks",
-]  # fmt: skip

@@ -254,6 +254,3 @@ def _frame(step: int, increment: int, time: float, n: int, at_nodes: Any) -> Fra
             name for name, values in (("U", shift), ("RF", force), ("F", None)) if values is None
         ),
     )
-
-
-__all__ = ["read_frd"]

@@ -403,6 +403,3 @@ def write_frd(results: Results, path: Path, binary: bool = False, **options: Any
             writer.add_modes(modes)
     finally:
         writer.close()
-
-
-__all__ = ["FrdWriter", "write_frd"]

@@ -155,6 +155,3 @@ def _closed_part(model: Model, pair: ContactPair, frame: Frame) -> tuple[float, 
     center = np.einsum("ij,ijk->k", weight, x[ends]) / area
     normal = np.array([chord[:, 1], -chord[:, 0]]) @ closed.sum(axis=1)
     return area, center, normal / (math.hypot(*normal) or 1.0)
-
-
-__all__ = ["VARIABLES", "contact_tables"]

@@ -113,6 +113,3 @@ def _six(row: Sequence[float]) -> tuple[float, ...]:
 
 def _row(head: int | str, values: Iterable[float]) -> str:
     return f"{head:>7}" + "".join(f"  {fortran(v, 7):>14}" for v in values) + "\n"
-
-
-__all__ = ["buckling_table", "eigenvalue_tables"]

@@ -26,6 +26,3 @@ def rows(form: str, *columns: NDArray[np.generic]) -> str:
     for row in zip(*(c.tolist() for c in columns), strict=True):
         table.extend(row)
     return (form * len(columns[0])) % tuple(table)
-
-
-__all__ = ["fortran", "rows"]

@@ -109,6 +109,3 @@ def _geometry(model: Model, edges: Ints, x: Floats) -> tuple[float, Floats, Floa
     center = np.einsum("ij,ijk->k", weight, x[ends]) / area
     normal = np.array([chord[:, 1], -chord[:, 0]]) @ thickness.mean(axis=1)
     return area, center, normal / (math.hypot(*normal) or 1.0)
-
-
-__all__ = ["VARIABLES", "section_tables"]

@@ -93,6 +93,3 @@ def _cards(stage: StageResults) -> str:
             "step before the motion turns"
         )
     return "\n".join(lines) + "\n"
-
-
-__all__ = ["write_spring"]

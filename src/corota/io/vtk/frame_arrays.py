@@ -123,14 +123,3 @@ def nodes_of_sections(model: Model) -> dict[int, Ints]:
     group, node, _ = nodes_of_groups([g for g, _ in blocks], [k for _, k in blocks], mesh.n_nodes)
     bounds = {g: np.searchsorted(group, [g, g + 1]) for g in distinct(group).tolist()}
     return {g: node[first:last] for g, (first, last) in bounds.items()}
-
-
-__all__ = [
-    "cell_data",
-    "halved",
-    "nodes_of_sections",
-    "point_data",
-    "scalars",
-    "six",
-    "tensor_arrays",
-]

@@ -142,6 +142,3 @@ class Grid:
 
 def _longer(values: Floats, more: int) -> Floats:
     return np.concatenate([values, np.zeros((more, *values.shape[1:]), values.dtype)])
-
-
-__all__ = ["POLY_LINE", "VTK_TYPES", "Grid", "topology"]

@@ -89,6 +89,3 @@ def whole(chain: Ints, ends: Ints, sizes: Ints, nodes: Ints, cells: Ints) -> tup
     new = np.concatenate([[0], np.cumsum(counts[order])])
     places = np.repeat(old[:-1][order] - new[:-1], counts[order]) + np.arange(new[-1])
     return by_node[places], new
-
-
-__all__ = ["Parts", "whole"]

@@ -61,6 +61,3 @@ def results_grid(results: Results, frame: int, scale: float, revolve: float = 0.
         grid.points = np.asarray(grid.points) + scale * grid.point_data["displacement"]
     grid.set_active_scalars(None)
     return Revolution(results.model, revolve).grid(results.mesh, grid) if revolve else grid
-
-
-__all__ = ["mesh_grid", "results_grid"]

@@ -92,6 +92,3 @@ class Revolution:
             solid.field_data[name] = values
         solid.set_active_scalars(None)
         return solid
-
-
-__all__ = ["Revolution"]

@@ -162,6 +162,3 @@ def _frame(mesh: Mesh, data: dict[str, Any], number: int) -> Frame:
         absent=frozenset(k for k, v in _FORCES.items() if v not in at),
         **moving,
     )
-
-
-__all__ = ["read_vtk_xml"]

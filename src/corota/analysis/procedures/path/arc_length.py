@@ -405,6 +405,3 @@ def _rate(tangent: Tangent, n_dofs: int) -> float:
     """Largest displacement per load factor along a path."""
     moved = float(np.abs(tangent.u[:n_dofs]).max())
     return moved / abs(tangent.factor) if tangent.factor else np.inf
-
-
-__all__ = ["PathStepper", "path_step"]

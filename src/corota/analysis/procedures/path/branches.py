@@ -220,6 +220,3 @@ class BranchTracer(PathTracer):
     def take_branch(self, critical: Critical) -> Increment:
         """See :func:`switch`."""
         return switch(self, critical)
-
-
-__all__ = ["BranchTracer", "switch"]

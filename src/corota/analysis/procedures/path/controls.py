@@ -149,6 +149,3 @@ class Factor:
 
     def change(self, du: Floats, dfactor: float, a: Floats, b: Floats) -> float | None:
         return self.value - dfactor
-
-
-__all__ = ["Arc", "Control", "Factor", "Plane", "Row"]

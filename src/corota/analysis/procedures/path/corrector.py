@@ -186,6 +186,3 @@ def tangent_at(
             metric.length = system.length
     size = metric.size(x, 1.0)
     return Tangent(x / size, 1.0 / size, negative), metric
-
-
-__all__ = ["Corrected", "correct", "tangent_at"]

@@ -127,6 +127,3 @@ def shares(
     if c * c >= 1.0:
         return 0.5 * p, 0.5 * q
     return (p - c * q) / (1.0 - c * c), (q - c * p) / (1.0 - c * c)
-
-
-__all__ = ["direction", "sense_behind", "shares"]

@@ -106,6 +106,3 @@ class Increment:
     critical: Critical | None = None
     last: bool = False
     closed: bool = False
-
-
-__all__ = ["End", "Increment", "PathStalled", "Plan"]

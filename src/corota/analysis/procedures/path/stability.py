@@ -307,15 +307,3 @@ def work_share(system: PathSystem, point: Point, mode: Floats) -> float:
         largest = float(np.abs(mode[kind]).max(initial=0.0))
         whole += float(np.abs(force[kind]).sum()) * largest
     return float(force @ mode) / whole if whole else 0.0
-
-
-__all__ = [
-    "Critical",
-    "Station",
-    "has_event",
-    "limit_behind",
-    "locate",
-    "softest_mode",
-    "turned",
-    "work_share",
-]

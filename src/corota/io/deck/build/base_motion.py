@@ -130,6 +130,3 @@ def base_supports(deck: Deck, model: Model, step: StepDraft, supports: list[Fixe
 def _again(draft: Draft, step: StepDraft) -> bool:
     """Whether a step defines the same support again."""
     return any(d.target == draft.target and d.index == draft.index for d in step.supports)
-
-
-__all__ = ["base_motion", "base_supports"]

@@ -40,6 +40,3 @@ def change_sections(
             stays = value == same or section.element.startswith("SPRING")
             sections.append(part if stays else change(part, value))
     model.sections = sections
-
-
-__all__ = ["change_sections"]

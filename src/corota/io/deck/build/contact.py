@@ -355,6 +355,3 @@ def _edges_of_nodes(mesh: Mesh, nodes: Ints) -> Ints:
     inside[nodes] = True
     chosen = [bool(inside[ends[:2]].all()) for ends in mesh.edge_nodes(free)]
     return np.asarray(free[np.array(chosen, bool)])
-
-
-__all__ = ["build_contacts"]

@@ -312,6 +312,3 @@ def _changed(rule: _Rule, card: Card, row: Row) -> _Rule:
     if "PROPERTY" in card.keyword:
         return replace(rule, interaction=row.get(2))
     return replace(rule, start=row.get(2))
-
-
-__all__ = ["add_general"]

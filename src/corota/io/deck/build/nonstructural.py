@@ -126,6 +126,3 @@ def _points(kind: str) -> tuple[Floats, Floats]:
     # The square folded onto the triangle.
     u, v = 0.5 * (1.0 + x), 0.5 * (1.0 + y)
     return np.stack([u, v * (1.0 - u)], axis=1), 0.25 * weight * (1.0 - u)
-
-
-__all__ = ["add_nonstructural"]

@@ -209,6 +209,3 @@ def _near_cells(mesh: Mesh, edges: Ints, nodes: Ints) -> Ints | None:
     if sides & {root(cell) for cell in opposite} or not opposite:
         return None
     return np.array(sorted(cell for cell in group if root(cell) in sides), np.int64)
-
-
-__all__ = ["PretensionBuilder"]

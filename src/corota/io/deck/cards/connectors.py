@@ -692,17 +692,3 @@ class _Connector:
                 nodes = nodes if found[1] else nodes[::-1]  # its velocity is first less second
             curve = table if card.has("NONLINEAR") else ()
             add_dashpot(self.deck, self.model, card, self.where, nodes, value, curve)
-
-
-__all__ = [
-    "connect",
-    "connector_behavior",
-    "connector_damping",
-    "connector_elasticity",
-    "connector_load",
-    "connector_motion",
-    "connector_section",
-    "connector_stop",
-    "link",
-    "prepare_connectors",
-]

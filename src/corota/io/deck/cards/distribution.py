@@ -121,6 +121,3 @@ def by_cell(
         deck.error(found.card, found.card.where, text, hint="give the default on its first line")
         return None
     return out
-
-
-__all__ = ["by_cell", "distribution", "distribution_table", "plane_angle", "thickness"]

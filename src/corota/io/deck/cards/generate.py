@@ -407,6 +407,3 @@ def in_global_axes(deck: Deck, card: Card, points: Floats) -> Floats:
         origin, axes = deck.system
         points = origin + points @ axes
     return points
-
-
-__all__ = ["elcopy", "elgen", "in_global_axes", "ncopy", "nfill", "ngen", "system"]

@@ -170,6 +170,3 @@ def fitted(draft: MaterialDraft, common: dict[str, Any]) -> rubber.Hyperelastic:
         more["reduced"] = kind.startswith("REDUCED")
     law: rubber.Hyperelastic = CLASSES[kind].fit(**draft.tests, **more)
     return law.with_ratio(ratio) if ratio and kind != "HYPERFOAM" else law
-
-
-__all__ = ["build_mullins", "fitted", "hyperelastic", "hyperfoam", "mullins_effect", "test_data"]

@@ -173,6 +173,3 @@ def _move_by_results(
         close = getattr(results, "close", None)
         if close is not None:
             close()
-
-
-__all__ = ["imperfection", "move_nodes"]

@@ -175,6 +175,3 @@ def controls(deck: Deck, card: Card) -> None:
         f"{card.where}: of *CONTROLS only a residual tolerance tighter than 1e-9 and the largest "
         "number of iterations are used; increments adapt automatically"
     )
-
-
-__all__ = ["buckle", "controls", "static"]

@@ -213,14 +213,3 @@ def build_johnson_cook(
     e, nu = elastic
     found = JohnsonCook(e, nu, A=a, B=b, n=n, rho=draft.rho, **options, **common)
     return found.with_temperatures() if heated and found.melting is not None else found
-
-
-__all__ = [
-    "build_johnson_cook",
-    "creep",
-    "heat_fraction",
-    "johnson_cook",
-    "rate_dependent",
-    "specific_heat",
-    "visco",
-]

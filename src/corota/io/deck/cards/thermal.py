@@ -168,13 +168,3 @@ def build_initial(
 def build_temperature(draft: Draft, nodes: str | Ints, amplitude: str) -> Temperature:
     """A temperature of the model."""
     return Temperature(nodes, draft.value[0], amplitude, draft.row.where)
-
-
-__all__ = [
-    "build_initial",
-    "build_temperature",
-    "expansion",
-    "initial_stress",
-    "initial_temperature",
-    "temperature",
-]

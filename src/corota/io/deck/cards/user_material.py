@@ -100,6 +100,3 @@ def user_material_cards(material: Umat, number: Callable[[float], str]) -> str:
     text = f"*USER MATERIAL, CONSTANTS={len(values)}\n"
     text += "".join(", ".join(row) + "\n" for row in rows)
     return text + (f"*DEPVAR\n{material.states}\n" if material.states else "")
-
-
-__all__ = ["build_umat", "depvar", "user_material", "user_material_cards"]

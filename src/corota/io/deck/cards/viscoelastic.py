@@ -99,6 +99,3 @@ def build_viscoelastic(
         name=parent.name,
         where=where,
     )
-
-
-__all__ = ["build_viscoelastic", "trs", "viscoelastic"]

@@ -148,6 +148,3 @@ def _spin(writer: Writer, item: InitialVelocity) -> Iterator[str]:
         motion = (vx - spin * (y - y0), vy + spin * (x - x0), spin)
         for dof, value in zip(DOFS, motion, strict=True):
             yield f"{label}, {dof}, {numbers([value])}\n"
-
-
-__all__ = ["attachment_cards", "dampers", "damping_card", "model_damping", "velocity_cards"]

@@ -410,6 +410,3 @@ def _equal(one: Any, two: Any) -> bool:
 def _short(value: Any) -> str:
     text = "nothing" if value is None else str(value)
     return text if len(text) <= 300 else text[:297] + "..."
-
-
-__all__ = ["Written", "refuse_loss"]

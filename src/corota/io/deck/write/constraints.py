@@ -104,6 +104,3 @@ def _coupling(writer: Writer, item: Coupling, count: int, label: int) -> str:
         f"*COUPLING, CONSTRAINT NAME=COUPLING{count}, REF NODE={reference}, "
         f"SURFACE=COUPLED{count}\n*DISTRIBUTING\n{named}"
     )
-
-
-__all__ = ["constraint_cards"]

@@ -202,6 +202,3 @@ def _point(at: Floats) -> str:
 
 def _word(name: str) -> str:
     return "_".join(name.replace(",", " ").split()) or "TIE"
-
-
-__all__ = ["contact_cards", "step_cards", "surfaces"]

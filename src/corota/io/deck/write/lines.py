@@ -86,6 +86,3 @@ def _beam(section: Section, elset: str, material: str) -> str:
 
 def _alike(one: Floats, other: Floats) -> bool:
     return one.shape == other.shape and np.allclose(one, other, rtol=1e-9, atol=0.0)
-
-
-__all__ = ["LINE_TYPES", "line_cards"]

@@ -210,6 +210,3 @@ def edge_area(writer: Writer, where: str | Ints) -> float:
         else:
             area += math.dist(x[0], x[1]) * float(thickness.mean())
     return area
-
-
-__all__ = ["boundary", "edge_area", "ending", "load_cards"]

@@ -169,6 +169,3 @@ def prony_cards(material: Viscoelastic) -> str:
     if shift is not None:
         text += f"*TRS\n{numbers((shift.T0, shift.C1, shift.C2))}\n"
     return text
-
-
-__all__ = ["plastic_cards", "prony_cards"]

@@ -313,5 +313,3 @@ PROCEDURES: dict[type[Step], Callable[[_Says], tuple[str, str]]] = {
     ModalDynamic: _modal_dynamic,
     SteadyState: _steady_state,
 }
-
-__all__ = ["step_cards"]

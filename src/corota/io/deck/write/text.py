@@ -62,6 +62,3 @@ def rows(items: Iterable[object], per_line: int = PER_LINE) -> Iterator[str]:
     row = [str(item) for item in items]
     for start in range(0, len(row), per_line):
         yield ", ".join(row[start : start + per_line]) + "\n"
-
-
-__all__ = ["DOFS", "PER_LINE", "Writer", "number", "numbers", "plain", "rows"]

@@ -72,6 +72,3 @@ def initial_cards(names: Writer, model: Model) -> Iterator[str]:
         rows = np.stack([np.broadcast_to(v.reshape(-1), len(cells)) for v in values], axis=1)
         for label, row in zip(model.mesh.cell_labels[cells].tolist(), rows.tolist(), strict=True):
             yield f"{label}, " + ", ".join(f"{v!r}" for v in row) + "\n"
-
-
-__all__ = ["expansion_cards", "initial_cards", "temperatures"]
