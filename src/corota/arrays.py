@@ -1,4 +1,4 @@
-"""Replacements of NumPy functions that would load large modules."""
+"""Types of arrays, and replacements of NumPy functions that would load large modules."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -9,6 +9,11 @@ import numpy as np
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    Bools = NDArray[np.bool_]
+    Complex = NDArray[np.complex128]
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
 
 
 def distinct(values: ArrayLike) -> NDArray[Any]:

@@ -20,9 +20,10 @@ from corota.errors import InputError, number
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
+
     #: Area, first and second moment about 0 of what lies below a height.
     Moments = Callable[[float], Floats]
 

@@ -34,17 +34,14 @@ from corota.model.loads import BodyForce, EdgeLoad, NodalForce
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
     from corota.analysis.distributed_forces import Distribution
     from corota.analysis.electrostatics import ElectrostaticPressure
     from corota.analysis.following_forces import FollowingTraction
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.penetration import PenetratingPressure
+    from corota.arrays import Bools, Floats, Ints
     from corota.errors import Location
 
-    Ints = NDArray[np.int64]
-    Floats = NDArray[np.float64]
     Item = EdgeLoad | BodyForce | NodalForce
 
 #: Tolerance for equal directions and axes (CalculiX's own tolerance).
@@ -106,7 +103,7 @@ class DistributedLoads:
         for load in self.loads:
             load.force.set_mass(kind)
 
-    def carry(self, scale: Callable[[DistributedLoad], float], runs_on: NDArray[np.bool_]) -> None:
+    def carry(self, scale: Callable[[DistributedLoad], float], runs_on: Bools) -> None:
         """Start the next step from the reached values, except where an amplitude continues."""
         for load in self.loads:
             load.begin, load.removed = scale(load), False
@@ -135,7 +132,7 @@ class DistributedLoads:
             self._replace(load)
         self.loads += [load for load in fresh if not _is_dead(load.item)]
 
-    def drop(self, removed: NDArray[np.bool_]) -> None:
+    def drop(self, removed: Bools) -> None:
         """Forget loads on the edges of cells that are not in the structure, shape (n_cells,)."""
         kept = []
         for load in self.loads:
@@ -175,7 +172,7 @@ class DistributedLoads:
                 kept += _fading(self._part(old, hit), new)
         self.loads = kept
 
-    def _part(self, load: DistributedLoad, chosen: NDArray[np.bool_]) -> DistributedLoad:
+    def _part(self, load: DistributedLoad, chosen: Bools) -> DistributedLoad:
         """The same load on some of its edges or nodes."""
         assert load.faces is not None
         faces = load.faces[chosen]

@@ -25,10 +25,9 @@ if TYPE_CHECKING:
 
     import corota._core as _core
     from corota.analysis.numbered_model import NumberedModel
+    from corota.arrays import Bools, Floats, Ints
     from corota.model.loads import BodyForce
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     Triplets = tuple[Ints, Ints, Floats]
     #: Size of a load on edges: a pressure, or the components of a traction.
     Scale = TypeVar("Scale", float, tuple[float, float])
@@ -213,9 +212,7 @@ class BodyLoad:
             self._linear = self._at_rest(masks, stiffness), stiffness
         return self._linear
 
-    def _by_area(
-        self, masks: list[NDArray[np.bool_]]
-    ) -> list[tuple[float, list[NDArray[np.bool_]]]]:
+    def _by_area(self, masks: list[Bools]) -> list[tuple[float, list[Bools]]]:
         """Volume per length of lines, inverted, with the elements that have it."""
         areas = np.array([block.section.profile[0] for block in self.system.own_blocks])
         return [
@@ -223,7 +220,7 @@ class BodyLoad:
             for area in np.unique(areas[areas > 0.0]).tolist()
         ]
 
-    def _at_rest(self, masks: list[NDArray[np.bool_]], values: Floats) -> Floats:
+    def _at_rest(self, masks: list[Bools], values: Floats) -> Floats:
         """Unit force on the reference in global axes; adds its derivative to `values`."""
         system, item = self.system, self.item
         force = np.zeros(system.n_dofs)
@@ -242,7 +239,7 @@ class BodyLoad:
 
     def _evaluate(
         self,
-        masks: list[NDArray[np.bool_]],
+        masks: list[Bools],
         scale: float,
         u: Floats,
         start: Floats,

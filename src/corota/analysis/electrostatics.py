@@ -12,14 +12,11 @@ from corota.analysis.following_forces import edge_shapes
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.distributed_forces import LoadSum
     from corota.analysis.numbered_model import NumberedModel
+    from corota.arrays import Floats, Ints
     from corota.errors import Location
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Gauss points and weights of an edge: 1 / gap is no polynomial.
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)

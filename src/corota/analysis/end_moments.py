@@ -17,12 +17,9 @@ from corota.analysis.distributed_forces import BodyLoad
 from corota.model.loads import BodyForce
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
+    from corota.arrays import Floats
     from corota.results.results import PointFields
-
-    Floats = NDArray[np.float64]
 
 
 def add_end_moments(

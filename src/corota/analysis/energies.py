@@ -17,15 +17,13 @@ import numpy as np
 from corota.model.schemes import SCHEMES
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.procedures.motion import ConservingMotion, NewmarkMotion
     from corota.analysis.terms.inertia import Inertia, MotionState
+    from corota.arrays import Floats
     from corota.model.steps import Dynamic, Step
 
-    Floats = NDArray[np.float64]
 
 #: Energies by Abaqus's names, with descriptions; ALLTH and ALLCL are ours.
 TERMS = {

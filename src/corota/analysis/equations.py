@@ -33,12 +33,10 @@ if TYPE_CHECKING:
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.linear.types import Sparse
     from corota.analysis.terms.term import Term
+    from corota.arrays import Bools, Floats, Ints
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.results import PointFields
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 #: A kind of term.
@@ -86,7 +84,7 @@ class System(NumberedModel):
         self._spare: list[Floats] = []
 
     @property
-    def constrained(self) -> NDArray[np.bool_]:
+    def constrained(self) -> Bools:
         """Dofs that supports prescribe, shape (n_dofs,)."""
         return self.conditions.constrained
 
@@ -110,7 +108,7 @@ class System(NumberedModel):
         forces = [term.multiplier_force(u, values) for term in self.terms]
         return sum((f for f in forces if f is not None), start=np.zeros(self.n_dofs))
 
-    def nodes_of_terms(self, role: Role) -> NDArray[np.bool_]:
+    def nodes_of_terms(self, role: Role) -> Bools:
         """Nodes of the surfaces that terms join, shape (n_nodes,); see :class:`Term`."""
         out = np.zeros(len(self.per_node), bool)
         for term in self.terms:
@@ -435,7 +433,7 @@ class System(NumberedModel):
         matrix: Sparse,
         rhs: Floats,
         du_prescribed: Floats,
-        constrained: NDArray[np.bool_],
+        constrained: Bools,
     ) -> Floats:
         rhs = rhs - matrix @ du_prescribed
         rhs[constrained] = 0.0

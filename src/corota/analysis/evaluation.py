@@ -12,12 +12,8 @@ from corota.analysis.constraints.none import IDENTITY
 from corota.analysis.terms.contact.gaps import ContactState, no_contact
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.constraints.elimination import LinearizedConstraints
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
+    from corota.arrays import Floats, Ints
 
 
 @dataclass

@@ -10,14 +10,11 @@ import numpy as np
 from corota.analysis.distributed_forces import Pressure
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     import corota._core as _core
     from corota.analysis.distributed_forces import LoadSum
     from corota.analysis.numbered_model import NumberedModel
+    from corota.arrays import Bools, Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Gauss points and weights of an edge.
 _POINTS = np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
@@ -46,7 +43,7 @@ class FollowingTraction:
     value : tuple of float
         A vector on the reference [force/length^2], or one number: a shear along the edges, with
         the element on the left.
-    bulges : list of (NDArray[np.bool_], _core.EdgeLoads)
+    bulges : list of (Bools, _core.EdgeLoads)
         Edges of drilling elements of one direction, by a mask of the edges.
     """
 
@@ -58,7 +55,7 @@ class FollowingTraction:
         nodes: Ints,
         thickness: Floats,
         value: tuple[float, ...],
-        bulges: list[tuple[NDArray[np.bool_], _core.EdgeLoads]],
+        bulges: list[tuple[Bools, _core.EdgeLoads]],
     ) -> None:
         self.system = system
         x = system.model.mesh.points[nodes]
@@ -145,7 +142,7 @@ class FollowingTraction:
         return self.system.from_nodes(force)
 
 
-def edge_shapes(straight: NDArray[np.bool_], r: Floats = _POINTS) -> tuple[Floats, Floats]:
+def edge_shapes(straight: Bools, r: Floats = _POINTS) -> tuple[Floats, Floats]:
     """Shape functions and slopes of edges at points r from -1 to 1, shapes (n, points, 3)."""
     one = np.ones_like(r)
     lines = np.stack([0.5 - 0.5 * r, 0.5 + 0.5 * r, 0.0 * r], axis=1)

@@ -11,13 +11,10 @@ from corota.arrays import distinct
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.numbered_model import NumberedModel
+    from corota.arrays import Floats, Ints
     from corota.mesh.data import Mesh
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Fraction of the largest motion below which a part is at rest, or a motion is rigid.
 SMALL = 1e-5

@@ -20,16 +20,12 @@ from corota.results.observer import Iteration
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.newton import Outcome, ResidualNorms
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
+    from corota.arrays import Floats
     from corota.model.steps import Dynamic, Static, Step
-
-    Floats = NDArray[np.float64]
 
     Save = Callable[[State, int, float, dict[str, float]], None]
     Report = Callable[[int, ResidualNorms, float, str], None]

@@ -10,8 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
+    from corota.arrays import Bools, Floats, Ints
 
 
 class LoadHistory:
@@ -46,7 +45,7 @@ class LoadHistory:
             out[named] = self.end[named] * factors[self.amplitude[named]]
         return out
 
-    def carry(self, reached: Floats, runs_on: NDArray[np.bool_]) -> None:
+    def carry(self, reached: Floats, runs_on: Bools) -> None:
         """Start the next step from `reached`, except where the amplitude continues.
 
         Parameters

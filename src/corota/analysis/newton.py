@@ -20,11 +20,9 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.evaluation import Evaluation
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: A residual below this multiple of the rounding error of the internal force counts as zero.
 FLOOR = 10.0

@@ -27,16 +27,12 @@ from corota.model.blocks import blocks_of, check_shapes, core_input
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.timer import Timer
+    from corota.arrays import Bools, Floats, Ints
     from corota.model.model import Model
     from corota.model.steps import Step
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 #: Surfaces of ties; slaves and masters of contact.
@@ -222,18 +218,18 @@ class NumberedModel:
         return self.at_nodes(self.communicator.sum(forces[0] - forces[1]))
 
     @property
-    def constrained(self) -> NDArray[np.bool_]:
+    def constrained(self) -> Bools:
         """Dofs that supports prescribe, shape (n_dofs,): none without terms."""
         return np.zeros(self.n_dofs, bool)
 
-    def nodes_of_terms(self, role: Role) -> NDArray[np.bool_]:
+    def nodes_of_terms(self, role: Role) -> Bools:
         """Nodes of the surfaces that terms join, shape (n_nodes,): none without terms."""
         return np.zeros(len(self.per_node), bool)
 
     @property
-    def counted(self) -> NDArray[np.bool_]:
+    def counted(self) -> Bools:
         """Dofs that measure the length of a path: displacements, not rotations."""
-        counted: NDArray[np.bool_] = ~self.is_rotation
+        counted: Bools = ~self.is_rotation
         return counted
 
     def timed(self, phase: str) -> Timer:

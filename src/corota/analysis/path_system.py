@@ -9,14 +9,11 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import ResidualNorms
+    from corota.arrays import Bools, Floats
 
-    Floats = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
 
 #: Message for an unsymmetric tangent, where stability is unknown.
 NOT_CONSERVATIVE = (
@@ -31,7 +28,7 @@ SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 CORNER = 0.2
 
 
-def product(u: Floats, v: Floats, counted: Mask) -> float:
+def product(u: Floats, v: Floats, counted: Bools) -> float:
     """Scalar product over the counted dofs.
 
     Without a linear algebra library: its threads cost more than such a sum.
@@ -85,7 +82,7 @@ class Metric:
     as that unit, so that arcs have no unit and a linear structure takes one to factor one.
     """
 
-    counted: Mask
+    counted: Bools
     length: float  # displacement of a unit of load factor at the start
 
     def dot(self, u: Floats, f: float, v: Floats, g: float) -> float:
@@ -114,7 +111,7 @@ class PathSystem(Protocol):
         ...
 
     @property
-    def counted(self) -> Mask:
+    def counted(self) -> Bools:
         """Unknowns that measure lengths, shape (n,)."""
         ...
 

@@ -12,15 +12,11 @@ from corota.analysis.distributed_forces import evaluate
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.distributed_forces import LoadSum
     from corota.analysis.numbered_model import NumberedModel
+    from corota.arrays import Bools, Floats, Ints
     from corota.errors import Location
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
-    Mask = NDArray[np.bool_]
 
 #: Relative difference of pressures that is rounding.
 SAME = 1e-9
@@ -148,7 +144,7 @@ class PenetratingPressure:
 
     # -- the front ---------------------------------------------------------------------
 
-    def begin(self, contact: Floats, soft: Mask, u: Floats) -> None:
+    def begin(self, contact: Floats, soft: Bools, u: Floats) -> None:
         """Start an attempt at an increment: draw back where surfaces press again.
 
         Parameters
@@ -166,7 +162,7 @@ class PenetratingPressure:
             self.wet = self.wet | near
         self._reach(u)
 
-    def advance(self, contact: Floats, soft: Mask, pressure: float, u: Floats) -> bool:
+    def advance(self, contact: Floats, soft: Bools, pressure: float, u: Floats) -> bool:
         """Advance at an equilibrium under a pressure of the fluid; False where it stands.
 
         Parameters are those of :meth:`begin`, of the trial state.
@@ -190,19 +186,19 @@ class PenetratingPressure:
         self.committed = (self.wet, self.pressure)
 
     @property
-    def _wet_nodes(self) -> Mask:
+    def _wet_nodes(self) -> Bools:
         """Nodes of edges with the fluid, shape (n_nodes,)."""
         found = np.zeros_like(self.start)
         found[self.chain.nodes[self.wet, :2]] = True
         return found
 
-    def _next(self, may: Mask) -> Mask:
+    def _next(self, may: Bools) -> Bools:
         """Dry edges that begin where the fluid is, of those that it may pass."""
         there = self.start | self._wet_nodes
-        out: Mask = there[self.chain.nodes[:, :2]].any(axis=1) & may & ~self.wet
+        out: Bools = there[self.chain.nodes[:, :2]].any(axis=1) & may & ~self.wet
         return out
 
-    def _passes(self, contact: Floats, soft: Mask) -> Mask:
+    def _passes(self, contact: Floats, soft: Bools) -> Bools:
         """Edges along which contact does not press too hard, shape (n,).
 
         Between hard surfaces the fluid takes from the contact pressure what it presses itself: both
@@ -215,10 +211,10 @@ class PenetratingPressure:
             np.add.at(wet, end, np.where(self.wet, self.length, 0.0))
         share = np.divide(wet, whole, out=np.zeros_like(wet), where=(whole > 0.0) & ~soft)
         both = (contact + self.pressure * share)[ends].mean(axis=1)
-        least: Mask = both <= self.pressure * (1.0 + SAME)
+        least: Bools = both <= self.pressure * (1.0 + SAME)
         if self.critical is None:
             return least
-        alone: Mask = contact[ends].mean(axis=1) <= self.critical * (1.0 + SAME)
+        alone: Bools = contact[ends].mean(axis=1) <= self.critical * (1.0 + SAME)
         hard = self.wet & ~soft[ends].any(axis=1)
         return alone | (least & hard)
 

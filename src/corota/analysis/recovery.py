@@ -12,13 +12,10 @@ from corota.results.derived import add_derived
 from corota.results.results import PointFields
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.user_material import UserBlocks
+    from corota.arrays import Floats
     from corota.model.sections import Section
-
-    Floats = NDArray[np.float64]
 
 
 #: Sums over the model, in their order.

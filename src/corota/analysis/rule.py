@@ -10,13 +10,10 @@ import numpy as np
 from corota.analysis.terms.term import StatePoint
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.elements import Elements
-
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
 
 
 class Rule:

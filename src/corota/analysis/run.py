@@ -44,18 +44,15 @@ from corota.results.results import Frame, Results
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
     from corota.analysis.checkpoint import Checkpoint
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.terms.moving_mass import MovingMass
+    from corota.arrays import Floats
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.observer import Observer
     from corota.results.results import PointFields
-
-    Floats = NDArray[np.float64]
 
 
 #: Largest useful number of threads per core, and in total.

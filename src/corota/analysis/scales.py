@@ -17,14 +17,12 @@ from corota.analysis.newton import FLOOR, ResidualNorms, larger
 from corota.model import elements
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.conditions import Conditions
     from corota.analysis.terms.term import Term
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Forces below this multiple of the rounding errors of the coordinates count as zero.
 NEGLIGIBLE_FORCE = 1e3

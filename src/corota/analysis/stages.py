@@ -19,15 +19,12 @@ from corota.results.measures import StagePath, measure_values
 from corota.results.table import NODAL, variables
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
+    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.model.stages import Stage
     from corota.results.frame import Frame
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Distance from a rigid motion, relative to it, up to which constrained nodes are one body.
 RIGID = 1e-9

@@ -11,17 +11,14 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.energies import Energies
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import Outcome
     from corota.analysis.stages import StageRecorder
     from corota.analysis.terms.linearized import LinearMotion
+    from corota.arrays import Floats
     from corota.model.paths import CriticalPoint, Modes
     from corota.results.results import PointFields
-
-    Floats = NDArray[np.float64]
 
 
 class Resumption(Protocol):

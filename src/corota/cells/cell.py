@@ -32,16 +32,15 @@ from corota.model.model import Model
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Bools, Floats, Ints
     from corota.cells.onset import Onset
     from corota.cells.waves import Waves
     from corota.model.sections import Section
     from corota.model.steps import Step
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     Entries = Sequence[Sequence[float | None]]
 
 
@@ -131,7 +130,7 @@ class PeriodicCell:
         paired = np.flatnonzero(self.shift.any(axis=1))
         self.model.fix([int(self.first[paired[0]])])
 
-    def _equations(self, rotating: NDArray[np.bool_]) -> list[Equation]:
+    def _equations(self, rotating: Bools) -> list[Equation]:
         found = []
         distances = self.shift @ self.vectors / self.size
         for node in np.flatnonzero(self.first != np.arange(len(self.first))).tolist():
@@ -354,7 +353,7 @@ def _depth(model: Model) -> float:
     return float(planar[0].thickness) if planar else 1.0
 
 
-def _nodes_with_rotation(model: Model) -> NDArray[np.bool_]:
+def _nodes_with_rotation(model: Model) -> Bools:
     """Nodes whose elements have rotations, shape (n_nodes,)."""
     found = np.zeros(model.mesh.n_nodes, bool)
     for block in blocks_of(model):

@@ -17,13 +17,10 @@ import numpy as np
 from corota.model.contact import RigidCurve, edges_or_nodes
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.model.contact import ContactPair
     from corota.model.model import Model
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     #: Nodes by their class and the multiples of the vectors from its first node.
     Places = dict[tuple[int, int, int], int]
 

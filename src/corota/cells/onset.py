@@ -17,12 +17,12 @@ from corota.errors import ConvergenceError, InputError, UnsupportedError
 from corota.gradients.trajectory import increments_of
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Complex, Floats
     from corota.cells.states import Cell, State
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
 
 #: Share of the largest pressure, and of the size of the cell, by which contact may be wrong.
 OVER = 1e-9
@@ -55,7 +55,7 @@ class Onset(Brief):
 
     time: float
     wave: Floats
-    shape: NDArray[np.complex128] = field(repr=False)
+    shape: Complex = field(repr=False)
     gradient: Floats
 
     def __str__(self) -> str:

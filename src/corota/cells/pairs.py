@@ -13,12 +13,9 @@ from scipy.spatial import cKDTree
 from corota.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 NOWHERE: Ints = np.zeros(0, np.int64)
 #: Distance of nodes that are one, over the vectors of the lattice.
@@ -77,7 +74,7 @@ def pair_nodes(mesh: Mesh, vectors: Floats, free: Ints = NOWHERE) -> tuple[Ints,
     return first, shift
 
 
-def _doubles(place: Floats, label: Ints) -> NDArray[np.bool_]:
+def _doubles(place: Floats, label: Ints) -> Bools:
     """Nodes with others of their class at the same place, where the class has several places."""
     _, first, index = np.unique(label, return_index=True, return_inverse=True)
     shift = np.rint(place - place[first[index]]).astype(np.int64)

@@ -18,15 +18,12 @@ from corota.gradients.trajectory import Trajectory, increments_of
 from corota.model.steps import Static
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.gradients.trajectory import Increment
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Iterations to a state between increments, and the last correction over the displacement.
 NEWTON, SETTLED = 20, 1e-12

@@ -27,12 +27,11 @@ from corota.errors import InputError, UnsupportedError
 from corota.model.steps import Static
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Bools, Complex, Floats
     from corota.cells.states import Cell, State
 
-    Floats = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
 
 #: Unknowns up to which all eigenvalues are computed.
 DENSE = 600
@@ -105,7 +104,7 @@ class Waves:
         #: Unknowns whose support excludes uniform motion.
         self._uniform = self._column[position[[start, start + 1]]]
 
-    def _transform(self, wave: ArrayLike) -> tuple[Any, NDArray[np.bool_]]:
+    def _transform(self, wave: ArrayLike) -> tuple[Any, Bools]:
         """All unknowns by those of a period, and which of these are free."""
         k = np.asarray(wave, dtype=np.float64)
         if k.shape != (2,) or not np.isfinite(k).all():

@@ -13,9 +13,8 @@ from corota.mesh.quality import STRAIGHT, aspect_ratio, corner_sines, jacobians
 from corota.model.joints import constrained_nodes, joined_nodes
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from corota.mesh.data import Ints, Mesh
+    from corota.arrays import Bools, Ints
+    from corota.mesh.data import Mesh
     from corota.model.model import Model
 
 #: Corners flatter than 10 degrees, or turned by more than 170.
@@ -72,7 +71,7 @@ def _many(severity: str, labels: Ints, text: str, hint: str) -> list[Diagnostic]
     return [Diagnostic(severity, f"element {labels[0]}{others} {text}", hint=hint)]
 
 
-def _same_place(mesh: Mesh, used: Ints, joined: NDArray[np.bool_]) -> list[Diagnostic]:
+def _same_place(mesh: Mesh, used: Ints, joined: Bools) -> list[Diagnostic]:
     """Pairs of nodes at one place of which neither is joined to anything."""
     if len(used) < 2:
         return []

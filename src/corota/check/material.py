@@ -13,11 +13,9 @@ from corota.errors import InputError
 from corota.model.user_material import UserMaterial
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.model.materials import Material
 
-    Floats = NDArray[np.float64]
 
 #: Increments of a path whose tangents are compared, and of one whose work is summed.
 COARSE, FINE = 12, 400

@@ -16,9 +16,8 @@ from corota.model.released import without_releases
 from corota.model.rotations import rotating_nodes
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.arrays import Bools, Floats, Ints
+    from corota.mesh.data import Mesh
     from corota.model.loads import Fixed
     from corota.model.model import Model
     from corota.model.steps import Step
@@ -49,7 +48,7 @@ def check_rigid(model: Model, first: int = 0) -> list[Diagnostic]:
     return found
 
 
-def _held(model: Model, rotating: NDArray[np.bool_]) -> list[Floats]:
+def _held(model: Model, rotating: Bools) -> list[Floats]:
     """Dofs fixed in each step, each of shape (n_nodes, 3)."""
     base = np.zeros((model.mesh.n_nodes, 3), bool)
     _hold(model, base, model.supports)
@@ -76,9 +75,7 @@ def _hold(model: Model, held: Floats, supports: list[Fixed]) -> None:
         held[model.mesh.node_indices(nodes), support.dof] = True
 
 
-def _free_modes(
-    mesh: Mesh, held: Floats, rotating: NDArray[np.bool_], step: Step | None
-) -> list[Diagnostic]:
+def _free_modes(mesh: Mesh, held: Floats, rotating: Bools, step: Step | None) -> list[Diagnostic]:
     body = stiff_part_of_cells(mesh)
     part = part_of_cells(mesh)
     node, owner = _body_nodes(mesh, body)
@@ -112,7 +109,7 @@ def _body_nodes(mesh: Mesh, body: Ints) -> tuple[Ints, Ints]:
 
 
 def _of_part(
-    mesh: Mesh, held: Floats, rotating: NDArray[np.bool_], bodies: Ints, node: Ints, owner: Ints
+    mesh: Mesh, held: Floats, rotating: Bools, bodies: Ints, node: Ints, owner: Ints
 ) -> list[Diagnostic]:
     points = mesh.points[node]
     center = (points.min(axis=0) + points.max(axis=0)) / 2

@@ -13,7 +13,8 @@ from corota.model import elements
 from corota.model.locking import locking_in
 
 if TYPE_CHECKING:
-    from corota.mesh.data import Ints, Mesh
+    from corota.arrays import Ints
+    from corota.mesh.data import Mesh
     from corota.model.model import Model
     from corota.model.sections import Section
 

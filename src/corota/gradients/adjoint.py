@@ -35,14 +35,12 @@ from corota.model.paths import DisplacementControl
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
+    from corota.arrays import Floats
     from corota.gradients.measures import Measure
     from corota.gradients.trajectory import Increment, Point, Trajectory
     from corota.model.steps import Step
 
-    Floats = NDArray[np.float64]
 
 #: Largest change of an adjoint state by its last correction, over its size, and where it does not
 #: fall any more.

@@ -17,9 +17,8 @@ from corota.errors import InputError, ResourceError
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Cost of a violated constraint over its scaled value: above that of the objective.
 COST = 1e3

@@ -29,14 +29,11 @@ from corota.gradients.measures import SpecialMeasure
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
+    from corota.arrays import Floats
     from corota.gradients.trajectory import Point, Trajectory
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Slope of the load factor at a limit point, or test function at a bifurcation, over its change in
 #: the first step of the search.

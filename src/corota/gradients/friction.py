@@ -23,13 +23,10 @@ from corota.gradients.surfaces import contact_of, evaluate, residuals
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
+    from corota.arrays import Floats, Ints
     from corota.gradients.surfaces import Surfaces
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Step of a position over the size of a cell.
 STEP = 1e-5

@@ -16,13 +16,12 @@ from corota.model.dofs import dof_index
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Bools, Floats, Ints
     from corota.gradients.trajectory import Point, Trajectory
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     Where = str | int | ArrayLike
 
 
@@ -453,7 +452,7 @@ def _volume(point: Point, cells: Where | None, weighed: bool) -> float:
     return total
 
 
-def _cells(point: Point, cells: Where | None) -> NDArray[np.bool_]:
+def _cells(point: Point, cells: Where | None) -> Bools:
     mesh = point.system.model.mesh
     wanted = np.zeros(mesh.n_cells, bool)
     if cells is None or (isinstance(cells, str) and cells == "all"):

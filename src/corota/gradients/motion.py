@@ -27,14 +27,11 @@ from corota.model.steps import Dynamic
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
+    from corota.arrays import Floats
     from corota.model.model import Model
     from corota.model.steps import Step
-
-    Floats = NDArray[np.float64]
 
 
 def refuse_motion(model: Model, steps: Sequence[Step]) -> None:

@@ -20,11 +20,10 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats
     from corota.model.model import Model
-
-    Floats = NDArray[np.float64]
 
 
 @dataclass

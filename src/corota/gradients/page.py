@@ -16,13 +16,11 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.gradients.optimization import Design, Optimum
     from corota.mesh import Mesh
     from corota.model.model import Model
 
-    Floats = NDArray[np.float64]
 
 #: Size of a picture, and its margins [px].
 WIDTH, HEIGHT, LEFT, EDGE = 760.0, 220.0, 70.0, 24.0

@@ -16,13 +16,12 @@ from corota.model import elements
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats
     from corota.gradients.adjoint import Adjoint
     from corota.gradients.trajectory import Trajectory
     from corota.model.model import Model
-
-    Floats = NDArray[np.float64]
 
 
 class Parameter(ABC):

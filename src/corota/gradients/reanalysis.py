@@ -6,8 +6,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from corota.analysis.run import solve
 from corota.display import Brief
 from corota.gradients.runs import Run
@@ -16,15 +14,13 @@ from corota.mesh import to_quadratic
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.gradients.density import Density
     from corota.gradients.measures import Measure
     from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
 
 #: Name of the contact of the body with itself.
 CONTACT = "body"

@@ -25,8 +25,9 @@ from corota.model.steps import Static, listed_steps
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats
     from corota.gradients.adjoint import Adjoint
     from corota.gradients.sides import Side
     from corota.gradients.trajectory import Increment, Point
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from corota.model.steps import Step
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
 
 #: Change of a force that symmetry excludes, over the forces it is made of.
 SYMMETRY = 1e-7

@@ -15,13 +15,10 @@ from corota.model.blocks import core_input
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
+    from corota.arrays import Floats, Ints
     from corota.gradients.trajectory import Point
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     Of = Callable[[dict[str, Any]], Floats]
 
 

@@ -24,12 +24,11 @@ from corota.names import choose
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Distance over the size of the mesh at which a mirrored node lies on the moved edge.
 ON_EDGE = 1e-6

@@ -17,9 +17,8 @@ from corota.errors import InputError, UnsupportedError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
     #: Side of a parameter's value: below or above.
     Side = Literal["left", "right"]
 

@@ -12,9 +12,8 @@ import numpy as np
 from corota.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Bytes of the unit in which the bound is given [MB].
 MEGABYTE = 1e6

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.gaps import ContactState
+    from corota.arrays import Bools, Floats
     from corota.model.model import Model
 
-    Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
 
 #: Gap of a closed constraint, over the size of the model.
@@ -61,7 +61,7 @@ class Surfaces:
     signs: list[Floats]
 
     @property
-    def acting(self) -> NDArray[np.bool_]:
+    def acting(self) -> Bools:
         """Multipliers of closed constraints, shape (n_multipliers,)."""
         found = []
         for state, sign in zip(self.states, self.signs, strict=True):
@@ -69,7 +69,7 @@ class Surfaces:
         return np.concatenate([np.zeros(0, bool), *found])
 
     @property
-    def slipping(self) -> list[NDArray[np.bool_]]:
+    def slipping(self) -> list[Bools]:
         """Whether each constraint slips, by pair."""
         return [state == SLIPPING for state in self.states]
 
@@ -153,9 +153,7 @@ def find(system: System, u: Floats, time: float, at: Evaluation, kinks: bool = F
     return Surfaces(multipliers, states, signs)
 
 
-def _refuse_stuck(
-    system: System, pair: Any, terms: Any, q: Floats, slips: NDArray[np.bool_]
-) -> None:
+def _refuse_stuck(system: System, pair: Any, terms: Any, q: Floats, slips: Bools) -> None:
     """Refuse constraints at the limit of friction that do not slip along the traction."""
     ahead = -np.sign(q) * terms.slip
     between = slips & (ahead <= STANDS * system.length * pair.full)

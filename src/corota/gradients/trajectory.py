@@ -26,14 +26,12 @@ from corota.model.user_material import UserMaterial
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from numpy.typing import NDArray
-
     from corota.analysis.evaluation import Evaluation
+    from corota.arrays import Floats
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.results import Frame, Results
 
-    Floats = NDArray[np.float64]
 
 #: Largest residual of a state at free dofs, over the sum of element forces there.
 EQUILIBRIUM = 1e-5

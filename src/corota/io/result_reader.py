@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
+    from corota.arrays import Bools, Floats, Ints
+
 
 _KINDS = {number: kind for kind, number in VTK_TYPES.items()}
 #: Arrays at nodes that a frame holds in its own attributes.
@@ -166,9 +166,9 @@ def _of_section(file: Any, group: Any, number: int, count: int) -> Callable[[str
     return read
 
 
-def _cells_with(blocks: list[Any], n_cells: int) -> dict[str, NDArray[np.bool_]]:
+def _cells_with(blocks: list[Any], n_cells: int) -> dict[str, Bools]:
     """Cells that have a variable at their points."""
-    found: dict[str, NDArray[np.bool_]] = {}
+    found: dict[str, Bools] = {}
     for block in blocks:
         for name in str(block.attrs.get("variables", "")).split():
             found.setdefault(name, np.zeros(n_cells, dtype=bool))[block["cells"][:]] = True

@@ -11,7 +11,7 @@ from corota.errors import InputError
 from corota.mesh.data import Cells, Mesh
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from corota.arrays import Ints
 
 
 def assembly(**bodies: Mesh) -> Mesh:
@@ -36,7 +36,7 @@ def assembly(**bodies: Mesh) -> Mesh:
         raise InputError("there is no body to assemble")
     kinds = list(dict.fromkeys(c.kind for m in bodies.values() for c in m.cells))
     first_node = np.concatenate([[0], np.cumsum([m.n_nodes for m in bodies.values()])])
-    parts: dict[str, list[NDArray[np.int64]]] = {kind: [] for kind in kinds}
+    parts: dict[str, list[Ints]] = {kind: [] for kind in kinds}
     places: list[list[tuple[str, int, int]]] = []
     for start, body in zip(first_node, bodies.values(), strict=False):
         here = []

@@ -15,9 +15,10 @@ from corota.mesh.kinds import EDGES
 from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    from corota.mesh.data import Floats, Ints
+    from corota.arrays import Bools, Floats, Ints
+
 
 _SPLIT = {
     "right": {"quad4": ((0, 1, 2), (0, 2, 3)), "quad9": ((0, 1, 2, 4, 5, 8), (0, 2, 3, 8, 6, 7))},
@@ -160,7 +161,7 @@ def merge(*meshes: Mesh, tolerance: float | None = None) -> Mesh:
 
 def _joints(
     edges: Ints, own: set[tuple[int, ...]], cell_index: Ints, outer: set[tuple[int, ...]]
-) -> NDArray[np.bool_]:
+) -> Bools:
     """Which edges were outer ones of their mesh and are inner ones of the joined mesh."""
     return np.array(
         [

@@ -18,10 +18,10 @@ from corota.mesh.kinds import EDGES, N_NODES, SIDES
 from corota.names import choose, did_you_mean, listed, match
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Ints = NDArray[np.int64]
-    Floats = NDArray[np.float64]
+    from corota.arrays import Bools, Floats, Ints
+
 
 # Conveniences: functions of higher layers, which load at their first call.
 draw_model = lazy("corota.plots:model")
@@ -160,7 +160,7 @@ class Mesh(Brief):
             found.append(cells.nodes[row, list(SIDES[cells.kind][side])])
         return found
 
-    def are_lines(self, cells: Ints) -> NDArray[np.bool_]:
+    def are_lines(self, cells: Ints) -> Bools:
         """Which of some cells are lines of two nodes."""
         kinds = np.repeat([c.kind == "line2" for c in self.cells], [len(c) for c in self.cells])
         return np.asarray(kinds[cells], bool)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from corota.mesh.data import Floats, Ints
+    from corota.arrays import Floats, Ints
 
     Curve = Callable[[float], Sequence[float]]
     Kind = Literal["tri3", "tri6", "quad4", "quad8", "quad9"]

@@ -19,11 +19,9 @@ from corota.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
+    from corota.arrays import Bools, Floats
 
     Point = Sequence[float]
-    Floats = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
 
 #: Distance within which a node lies on a curve, relative to the diagonal of the mesh.
 TOLERANCE = 1e-6
@@ -135,7 +133,7 @@ def is_selection(name: str) -> bool:
     return _FORM.fullmatch(name.strip()) is not None
 
 
-def selected(name: str, points: Floats) -> Mask:
+def selected(name: str, points: Floats) -> Bools:
     """Nodes of a selection, shape (n_nodes,).
 
     Parameters
@@ -190,13 +188,13 @@ def _extent(points: Floats) -> str:
     return f"the mesh has x from {low[0]:g} to {high[0]:g}, y from {low[1]:g} to {high[1]:g}"
 
 
-def _near(points: Floats, x: float, y: float) -> Mask:
+def _near(points: Floats, x: float, y: float) -> Bools:
     chosen = np.zeros(len(points), np.bool_)
     chosen[np.argmin(np.hypot(points[:, 0] - x, points[:, 1] - y))] = True
     return chosen
 
 
-def _on_line(points: Floats, x1: float, y1: float, x2: float, y2: float) -> Mask:
+def _on_line(points: Floats, x1: float, y1: float, x2: float, y2: float) -> Bools:
     along = np.array([x2 - x1, y2 - y1])
     length = float(np.hypot(*along))
     if not (length > 0.0 and math.isfinite(length)):
@@ -208,19 +206,19 @@ def _on_line(points: Floats, x1: float, y1: float, x2: float, y2: float) -> Mask
     return np.asarray((distance <= slack) & (place >= -slack) & (place <= length + slack))
 
 
-def _inside(points: Floats, x1: float, y1: float, x2: float, y2: float) -> Mask:
+def _inside(points: Floats, x1: float, y1: float, x2: float, y2: float) -> Bools:
     slack = TOLERANCE * _size(points)
     low, high = np.array([x1, y1]) - slack, np.array([x2, y2]) + slack
     return np.asarray(((points >= low) & (points <= high)).all(axis=1))
 
 
-def _on_circle(points: Floats, x: float, y: float, radius: float) -> Mask:
+def _on_circle(points: Floats, x: float, y: float, radius: float) -> Bools:
     distance = np.hypot(points[:, 0] - x, points[:, 1] - y)
     return np.asarray(np.abs(distance - radius) <= TOLERANCE * _size(points))
 
 
 #: Nodes of each kind of selection.
-_MASKS: dict[str, Callable[..., Mask]] = {
+_MASKS: dict[str, Callable[..., Bools]] = {
     "near": _near,
     "on_line": _on_line,
     "inside": _inside,

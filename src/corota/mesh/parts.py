@@ -11,9 +11,8 @@ from corota.arrays import distinct
 from corota.mesh.kinds import EDGES
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from corota.mesh.data import Ints, Mesh
+    from corota.arrays import Bools, Ints
+    from corota.mesh.data import Mesh
 
 
 def cells_of(mesh: Mesh, where: str | Ints) -> Ints:
@@ -65,7 +64,7 @@ def stiff_part_of_cells(mesh: Mesh) -> Ints:
     return _components(row[order[same]], row[order[same + 1]], mesh.n_cells)
 
 
-def parts_without(mesh: Mesh, without: NDArray[np.bool_]) -> Ints:
+def parts_without(mesh: Mesh, without: Bools) -> Ints:
     """Number the parts connected by cells, except those of a mask; shape (n_nodes,)."""
     nodes, cells = _incidence(mesh)
     kept = ~without[cells]

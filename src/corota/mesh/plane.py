@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from corota.arrays import Bools, Floats
 
-    Floats = NDArray[np.float64]
 
 #: Distance from the plane that counts as rounding, relative to the size of the part.
 FLAT = 1e-6
@@ -18,7 +17,7 @@ FLAT = 1e-6
 _PLANES = (("xy", (0, 1), 2), ("xz", (0, 2), 1), ("yz", (1, 2), 0))
 
 
-def into_plane(points: Floats, used: NDArray[np.bool_]) -> tuple[Floats, list[str]] | None:
+def into_plane(points: Floats, used: Bools) -> tuple[Floats, list[str]] | None:
     """Points of a plane that is normal to an axis, in that plane.
 
     Parameters

@@ -11,9 +11,8 @@ from corota.mesh.kinds import KINDS
 from corota.mesh.shape_functions import shape_gradients
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from corota.arrays import Bools, Floats, Ints
 
-    from corota.mesh.data import Floats, Ints
 
 #: Smallest corner sine, relative to the lengths of its sides, that counts as not straight.
 STRAIGHT = 1e-12
@@ -101,7 +100,7 @@ def classify(kind: str, points: Floats) -> Ints:
     return found
 
 
-def _closed(sides: Floats) -> NDArray[np.bool_]:
+def _closed(sides: Floats) -> Bools:
     """Whether a side has no length, shape (n_cells, n_corners)."""
     return np.asarray(sides <= STRAIGHT * sides.max(axis=1, initial=0.0)[:, None])
 

@@ -11,7 +11,8 @@ import numpy as np
 from corota.errors import InputError, number
 
 if TYPE_CHECKING:
-    from corota.mesh.data import Floats, Mesh
+    from corota.arrays import Floats
+    from corota.mesh.data import Mesh
 
 #: Waves whose sum is a field; its distribution at a point is Gaussian to about 1 / WAVES.
 WAVES = 500

@@ -12,9 +12,8 @@ from corota.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from corota.arrays import Ints
     from corota.errors import Location
-
-    Ints = NDArray[np.int64]
 
 
 def indices(

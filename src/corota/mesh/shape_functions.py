@@ -10,9 +10,7 @@ import numpy as np
 from corota.mesh.kinds import KINDS, monomials
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
 
 
 def shape_functions(kind: str, at: Floats) -> Floats:

@@ -12,7 +12,7 @@ from corota.display import Brief
 from corota.errors import InputError, Location
 
 if TYPE_CHECKING:
-    from corota.mesh.data import Ints
+    from corota.arrays import Ints
 
 
 @dataclass(repr=False)

@@ -21,11 +21,9 @@ from corota.model.loads import BodyForce, EdgeLoad
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Ints
     from corota.model.model import Model
 
-    Ints = NDArray[np.int64]
 
 #: Radius that counts as zero, relative to the largest coordinate.
 ON_AXIS = 1e-9

@@ -21,12 +21,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.model.sections import Section
     from corota.model.steps import Step
 
-    Ints = NDArray[np.int64]
-    Floats = NDArray[np.float64]
 
 #: Elements that are checked at once: what is computed of them stays in the cache.
 _AT_ONCE = 1 << 13

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-
 from corota.errors import FileError, InputError, number
 from corota.model.single_point import SinglePoint
 from corota.names import choose
@@ -20,9 +18,6 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
 
 #: Names under which compilers export a subroutine UMAT.
 SYMBOLS = ("umat_", "umat", "UMAT", "_umat_")

@@ -15,12 +15,10 @@ from corota.renamed import accept_old_names
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 @dataclass(repr=False)
@@ -78,7 +76,7 @@ class Coupling(Brief):
     reference: int
     kind: Literal["kinematic", "distributing"] = "kinematic"
     dofs: tuple[int, ...] = (0, 1, 2)
-    weights: NDArray[np.float64] | None = None
+    weights: Floats | None = None
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
 

@@ -18,10 +18,9 @@ from corota.renamed import accept_old_names
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Ints = NDArray[np.int64]
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats, Ints
     from corota.mesh.data import Mesh
     from corota.model.friction import Friction
 

@@ -20,15 +20,12 @@ from corota.model.summary import joint_lines
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from corota.model.loads import Fixed, Load
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.sections import Section
     from corota.model.steps import Step
 
-    Ints = NDArray[np.int64]
 
 #: Points of a curve that is drawn from a formula.
 CURVE_POINTS = 61

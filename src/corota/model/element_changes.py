@@ -15,11 +15,8 @@ from corota.mesh import selection
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Ints
     from corota.mesh import Mesh
-
-    Ints = NDArray[np.int64]
 
 
 @dataclass(repr=False)

@@ -15,9 +15,8 @@ from corota.errors import InputError, number
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Largest friction coefficient: no pressure lets surfaces slip with it.
 MOST_FRICTION = 1e6

@@ -17,10 +17,11 @@ from corota.model.single_point import SinglePoint
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
     from typing_extensions import Self
 
-    Floats = NDArray[np.float64]
+    from corota.arrays import Bools, Floats
+
 
 #: Powers of both invariants of the polynomial law, in the order of its coefficients.
 POWERS = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
@@ -129,7 +130,7 @@ class Hyperelastic(SinglePoint, ABC):
             found[test] = (ends[0], ends[1])
         return found
 
-    def _stable(self, test: str, stretch: Floats) -> NDArray[np.bool_]:
+    def _stable(self, test: str, stretch: Floats) -> Bools:
         axial = np.log(stretch)
         path = np.column_stack([axial, TESTS[test] * axial, np.zeros_like(axial)])
         tangent = self.respond(path)["tangent"][:, :2, :2]

@@ -11,10 +11,9 @@ from corota.errors import InputError
 from corota.model.loads import InitialStress, InitialTemperature
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Ints = NDArray[np.int64]
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats, Ints
 
 
 class InitialFields:

@@ -10,11 +10,8 @@ import numpy as np
 from corota.model.loads import Amplitude
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.errors import Location
-
-    Floats = NDArray[np.float64]
 
 
 class IntegratedAmplitude(Amplitude):

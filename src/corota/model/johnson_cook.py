@@ -13,8 +13,7 @@ from corota.model.materials import _positive, isotropic_compliance
 from corota.model.single_point import LawOfTheCore
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from corota.arrays import Floats
 
 
 @dataclass
@@ -132,7 +131,7 @@ class JohnsonCook(LawOfTheCore):
         return MaterialTable(rows, rho=self.rho, name=self.name, where=self.where,
                              expansion=self.expansion, rayleigh=self.rayleigh)  # fmt: skip
 
-    def compliance(self) -> NDArray[np.float64]:
+    def compliance(self) -> Floats:
         return isotropic_compliance(self.E, self.nu)
 
     def parameters(self, orientation: float = 0.0) -> list[float]:

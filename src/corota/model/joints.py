@@ -11,12 +11,11 @@ from corota.model.constraints import Coupling, Equation
 from corota.model.contact import RigidCurve, edges_or_nodes
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools
     from corota.model.model import Model
 
 
-def constrained_nodes(model: Model) -> NDArray[np.bool_]:
+def constrained_nodes(model: Model) -> Bools:
     """Whether a constraint or a rigid curve has a node, shape (n_nodes,)."""
     mesh = model.mesh
     has = np.zeros(mesh.n_nodes, bool)
@@ -38,7 +37,7 @@ def constrained_nodes(model: Model) -> NDArray[np.bool_]:
     return has
 
 
-def joined_nodes(model: Model) -> NDArray[np.bool_]:
+def joined_nodes(model: Model) -> Bools:
     """Whether a node is in a constraint, or on an edge of a tie or a contact pair."""
     has, mesh = constrained_nodes(model), model.mesh
     sides: list[object] = [side for tie in model.ties for side in (tie.slave, tie.master)]

@@ -11,14 +11,13 @@ from corota.errors import InputError
 from corota.mesh.parts import cells_of
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Ints
     from corota.mesh import Mesh
     from corota.model.materials import Material
     from corota.model.sections import Section
     from corota.profiles import Profile
-
-    Ints = NDArray[np.int64]
 
 
 class LineSections:

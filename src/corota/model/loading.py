@@ -15,12 +15,10 @@ from corota.model.loads import BodyForce, EdgeLoad, Fixed, Force, Temperature, s
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats, Ints
     from corota.model.loads import Load
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 #: Default of directions: fixed, and distinct from a 0 that is given.

@@ -19,12 +19,9 @@ from corota.names import choose
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
     from corota.model.attachments import PointMass
-
-    Ints = NDArray[np.int64]
 
 
 @dataclass(repr=False)
@@ -39,8 +36,8 @@ class Amplitude(Brief):
         Whether ``time`` counts from the start of the analysis, not of the step.
     """
 
-    time: NDArray[np.float64]
-    value: NDArray[np.float64]
+    time: Floats
+    value: Floats
     total_time: bool = False
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
@@ -107,12 +104,12 @@ class Amplitude(Brief):
         return float(weight @ self._jumps[near]) / h
 
     @cached_property
-    def _jumps(self) -> NDArray[np.float64]:
+    def _jumps(self) -> Floats:
         """Jump of the slope at each time of the table, which is constant outside."""
         slope = np.diff(self.value) / np.diff(self.time)
         return np.diff(slope, prepend=0.0, append=0.0)
 
-    def kinks(self) -> NDArray[np.float64]:
+    def kinks(self) -> Floats:
         """Times at which the slope jumps, unlike that of a finely sampled smooth function.
 
         A jump counts that is half of the largest slope, or a tenth of it and three times its
@@ -122,7 +119,7 @@ class Amplitude(Brief):
         steepest = np.abs(np.diff(self.value) / np.diff(self.time)).max(initial=0.0)
         around = np.maximum(np.append(size[1:], 0.0), np.append(0.0, size[:-1]))
         alone = (size > 0.1 * steepest) & (size > 3.0 * around)
-        out: NDArray[np.float64] = self.time[(size > 0.5 * steepest) | alone]
+        out: Floats = self.time[(size > 0.5 * steepest) | alone]
         return out
 
 
@@ -152,7 +149,7 @@ def _amplitude(name: object, where: Location | None) -> str:
     return name
 
 
-def finite(value: object, what: str, where: Location | None) -> float | NDArray[np.float64]:
+def finite(value: object, what: str, where: Location | None) -> float | Floats:
     """A finite number or array of them.
 
     Raises
@@ -247,7 +244,7 @@ class NodalForce(Brief):
 
     nodes: str | Ints
     dof: int
-    value: float | NDArray[np.float64]
+    value: float | Floats
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
     follower: bool = False
@@ -507,7 +504,7 @@ class BodyForce(Brief):
         return [(mass, nodes[np.isin(nodes, at)]) for mass, nodes in placed]
 
     @property
-    def axis(self) -> NDArray[np.float64] | None:
+    def axis(self) -> Floats | None:
         """Unit vector along a uniform load, shape (2,); None without any direction."""
         along = np.array(self.direction or self.value[:2])
         size = float(np.hypot(*along))
@@ -553,7 +550,7 @@ class Temperature(Brief):
     """
 
     nodes: str | Ints
-    value: float | NDArray[np.float64]
+    value: float | Floats
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
 
@@ -576,7 +573,7 @@ class InitialTemperature(Brief):
     """
 
     nodes: str | Ints
-    value: float | NDArray[np.float64]
+    value: float | Floats
     where: Location | None = field(default=None, compare=False, repr=False)
 
 
@@ -595,7 +592,7 @@ class InitialStress(Brief):
     """
 
     cells: str | Ints
-    value: tuple[float | NDArray[np.float64], ...]
+    value: tuple[float | Floats, ...]
     where: Location | None = field(default=None, compare=False, repr=False)
 
 

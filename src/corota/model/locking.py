@@ -18,7 +18,8 @@ from corota.model.material_table import MaterialTable
 from corota.model.materials import Elastic
 
 if TYPE_CHECKING:
-    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.arrays import Floats, Ints
+    from corota.mesh.data import Mesh
     from corota.model.model import Model
     from corota.model.sections import Section
     from corota.model.steps import Step

@@ -18,9 +18,10 @@ from corota.model.rates import CowperSymonds, Norton, RateCurves, YieldRatio
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
+
 
 #: Data of a material other than the constants of its law.
 _COMMON = ("rho", "expansion", "rayleigh", "name", "where", "rows")

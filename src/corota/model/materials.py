@@ -13,13 +13,14 @@ from corota.display import Brief
 from corota.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats
     from corota.errors import Location
     from corota.model.local_strain import LocalStrain
 
 
-def isotropic_compliance(E: ArrayLike, nu: ArrayLike) -> NDArray[np.float64]:
+def isotropic_compliance(E: ArrayLike, nu: ArrayLike) -> Floats:
     """Compliance of isotropic elasticity, rows xx, yy, zz, xy, shape (..., 4, 4)."""
     young, poisson = np.asarray(E, dtype=np.float64), np.asarray(nu, dtype=np.float64)
     s = np.zeros((*young.shape, 4, 4))
@@ -84,7 +85,7 @@ class Expansion(Brief):
                 "increase"
             )
 
-    def _rows(self) -> NDArray[np.float64]:
+    def _rows(self) -> Floats:
         rows = np.empty((len(self.alpha), 3))
         for row, alpha in zip(rows, self.alpha, strict=True):
             row[:] = alpha
@@ -93,11 +94,11 @@ class Expansion(Brief):
     def __bool__(self) -> bool:
         return bool(self._rows().any())
 
-    def strain(self, temperature: ArrayLike, start: ArrayLike) -> NDArray[np.float64]:
+    def strain(self, temperature: ArrayLike, start: ArrayLike) -> Floats:
         """Thermal strain along the material axes, shape (..., 3)."""
         rows = self._rows()
 
-        def from_zero(at: ArrayLike) -> NDArray[np.float64]:
+        def from_zero(at: ArrayLike) -> Floats:
             now = np.asarray(at, dtype=np.float64)
             if len(rows) == 1:
                 alpha = np.broadcast_to(rows[0], (*now.shape, 3))
@@ -167,7 +168,7 @@ class Material(Brief):
         """Local strain of sections that name none: the law's own, else by whether it flows."""
         return self.local_strain or ("logarithmic" if self.flows else "linear")
 
-    def compliance(self) -> NDArray[np.float64]:
+    def compliance(self) -> Floats:
         """Elastic compliance along the material axes, rows 11, 22, 33, 12, shape (4, 4).
 
         Shear is engineering shear.
@@ -179,14 +180,12 @@ class Material(Brief):
         )
 
     @staticmethod
-    def compliance_of(constants: NDArray[np.float64]) -> NDArray[np.float64]:
+    def compliance_of(constants: Floats) -> Floats:
         """Elastic compliance (..., 4, 4) of the first parameters (..., elastic_constants)."""
         return isotropic_compliance(constants[..., 0], constants[..., 1])
 
     @classmethod
-    def complementary_of(
-        cls, constants: NDArray[np.float64], stress: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def complementary_of(cls, constants: Floats, stress: Floats) -> Floats:
         """Complementary energy by volume of stresses (..., 4) along the material axes."""
         strain = np.einsum("...ij,...j->...i", cls.compliance_of(constants), stress)
         return 0.5 * np.asarray(np.sum(strain * stress, axis=-1))
@@ -249,7 +248,7 @@ class Elastic(Material):
         self._check_isotropic(self.E, self.nu)
         self._check_motion()
 
-    def compliance(self) -> NDArray[np.float64]:
+    def compliance(self) -> Floats:
         return isotropic_compliance(self.E, self.nu)
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
@@ -312,11 +311,11 @@ class Orthotropic(Material):
             )
         self._check_motion()
 
-    def compliance(self) -> NDArray[np.float64]:
+    def compliance(self) -> Floats:
         return self.compliance_of(np.array(self.parameters()[:7]))
 
     @staticmethod
-    def compliance_of(constants: NDArray[np.float64]) -> NDArray[np.float64]:
+    def compliance_of(constants: Floats) -> Floats:
         e1, e2, e3, nu12, nu13, nu23, g12 = np.moveaxis(constants, -1, 0)
         s = np.zeros((*e1.shape, 4, 4))
         for i, modulus in enumerate((e1, e2, e3, g12)):

@@ -59,8 +59,9 @@ from corota.renamed import accept_old_names
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats, Ints
     from corota.errors import Diagnostic
     from corota.mesh import Mesh
     from corota.model.friction import Friction
@@ -71,7 +72,6 @@ if TYPE_CHECKING:
     from corota.model.sections import Plane
     from corota.model.steps import Step
 
-    Ints = NDArray[np.int64]
     Where = str | ArrayLike
 
 # Conveniences: functions of higher layers, which load at their first call.
@@ -154,7 +154,7 @@ class Model(Loading, LineSections, InitialFields, Stages):
         self.title = ""
         self.sources: list[str] = []
         self.start: Any = None
-        self.time_points: dict[str, NDArray[np.float64]] = {}
+        self.time_points: dict[str, Floats] = {}
         self.unit_system = Units()
 
     def __setattr__(self, name: str, value: object) -> None:

@@ -15,9 +15,10 @@ from corota.model.dofs import dof_index
 from corota.model.settings import Settings
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
+
     Where = str | int | ArrayLike
 
 

@@ -16,13 +16,10 @@ from corota.model.single_point import LawOfTheCore
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.errors import Location
     from corota.model.rates import Rate
 
-    Floats = NDArray[np.float64]
 
 #: Largest number of back-stresses of a material.
 MAX_BACK_STRESSES = 6

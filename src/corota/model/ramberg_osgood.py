@@ -14,7 +14,9 @@ from corota.model.materials import _positive, isotropic_compliance
 from corota.model.single_point import LawOfTheCore
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from corota.arrays import Floats
 
 #: Halvings after which an interval is of rounding size.
 BISECTIONS = 60
@@ -85,7 +87,7 @@ class RambergOsgood(LawOfTheCore):
 
     def uniaxial(
         self, strain: ArrayLike, time: ArrayLike | None = None, lasting: bool = True
-    ) -> NDArray[np.float64]:
+    ) -> Floats:
         """Uniaxial stress at axial strains, from the law itself by bisection."""
         wanted = self.E * np.abs(np.asarray(strain, float))
         # Either term alone would give too large a stress.
@@ -95,21 +97,19 @@ class RambergOsgood(LawOfTheCore):
             s = 0.5 * (low + high)
             grown = s + self.offset * self.yield_stress * (s / self.yield_stress) ** self.exponent
             low, high = np.where(grown < wanted, s, low), np.where(grown < wanted, high, s)
-        out: NDArray[np.float64] = np.copysign(high, strain)
+        out: Floats = np.copysign(high, strain)
         return out
 
-    def compliance(self) -> NDArray[np.float64]:
+    def compliance(self) -> Floats:
         return isotropic_compliance(self.E, self.nu)
 
     @classmethod
-    def complementary_of(
-        cls, constants: NDArray[np.float64], stress: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def complementary_of(cls, constants: Floats, stress: Floats) -> Floats:
         E, _, yield_stress, exponent, offset = np.moveaxis(constants, -1, 0)
         xx, yy, zz, xy = np.moveaxis(stress, -1, 0)
         q2 = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * xy**2
         power = offset * (np.sqrt(q2) / yield_stress) ** (exponent - 1.0)
-        out: NDArray[np.float64] = power * q2 / (E * (exponent + 1.0))
+        out: Floats = power * q2 / (E * (exponent + 1.0))
         return out + super().complementary_of(constants, stress)
 
     def parameters(self, orientation: float = 0.0) -> list[float]:

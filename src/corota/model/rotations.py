@@ -13,14 +13,13 @@ from corota.model.constraints import Coupling
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools
     from corota.mesh import Mesh
     from corota.model.loads import Fixed
     from corota.model.model import Model
 
 
-def rotating_nodes(model: Model) -> NDArray[np.bool_]:
+def rotating_nodes(model: Model) -> Bools:
     """Whether an element gives a node a rotation, shape (n_nodes,)."""
     mesh = model.mesh
     has = np.zeros(mesh.n_nodes, bool)

@@ -20,13 +20,9 @@ from corota.names import choose
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
     from corota.model.local_strain import LocalStrain
-
-    Ints = NDArray[np.int64]
-    Floats = NDArray[np.float64]
 
 
 #: State of the plane: no stress through the thickness, no strain there, a solid of revolution.

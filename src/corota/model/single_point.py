@@ -11,9 +11,9 @@ import numpy as np
 from corota.model.materials import Material
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
 
 
 class SinglePoint(Material):

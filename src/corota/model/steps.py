@@ -25,8 +25,9 @@ from corota.names import choose
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats, Ints
     from corota.errors import Location
     from corota.model.loads import Load, LoadKind
 
@@ -351,7 +352,7 @@ class Step(Brief, Loading, Settings):
         return not isinstance(self.new_loads, bool) and kind in self.new_loads
 
 
-def _cells_of(cells: str | ArrayLike) -> str | NDArray[np.int64]:
+def _cells_of(cells: str | ArrayLike) -> str | Ints:
     return cells if isinstance(cells, str) else np.asarray(cells, np.int64)
 
 
@@ -707,7 +708,7 @@ class SteadyState(Step):
                 self.where,
             )
 
-    def sweep(self, own: NDArray[np.float64]) -> NDArray[np.float64]:
+    def sweep(self, own: Floats) -> Floats:
         """Frequencies of the response, refined between eigenfrequencies."""
         import numpy as np
 

@@ -17,14 +17,10 @@ from corota.model.locking import SLENDER, outlines
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.model.loads import Fixed
     from corota.model.model import Model
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Square of the cosine between the direction of a support and the normal of an edge that it holds:
 #: supports along a curve are not normal to the chords of a mesh.

@@ -14,11 +14,10 @@ from corota.model.materials import Material
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats
     from corota.model.local_strain import LocalStrain
-
-    Floats = NDArray[np.float64]
 
 
 @dataclass

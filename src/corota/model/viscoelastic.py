@@ -17,10 +17,10 @@ from corota.names import choose
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
+    from corota.arrays import Complex, Floats
+
 
 #: Numbers of the parents' laws in the core.
 PARENTS = ("elastic", "polynomial", "ogden", "arruda_boyce", "hyperfoam")

@@ -15,9 +15,10 @@ from corota.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
+
 
 #: Samples of a full circle.
 SAMPLES = 72

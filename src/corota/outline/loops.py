@@ -14,12 +14,9 @@ from corota.lazy import lazy
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.outline.curves import Curve
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Gap that is closed, relative to the diagonal of the drawing.
 GAP = 1e-5

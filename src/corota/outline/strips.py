@@ -16,12 +16,9 @@ from corota.outline.loops import area, contains
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.outline.loops import Loops
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Length over thickness from which a member is meshed in rows, and the largest length of its cells
 #: over their height.

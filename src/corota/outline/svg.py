@@ -19,9 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Elements that draw nothing where they stand.
 SKIPPED = ("defs", "clipPath", "mask", "marker", "pattern", "symbol", "metadata")

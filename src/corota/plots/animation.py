@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.arrays import Floats, Ints
     from corota.results.results import Results
 
-    Ints = NDArray[np.int64]
 
 #: Pictures of one pass, at most.
 MOST_FRAMES = 120
@@ -60,7 +60,7 @@ def require_ffmpeg() -> None:
         )
 
 
-def moments(times: NDArray[np.float64], most: int, spacing: str) -> Ints:
+def moments(times: Floats, most: int, spacing: str) -> Ints:
     """Frames to show, one per picture; a long increment is shown proportionally longer.
 
     Examples

@@ -17,13 +17,10 @@ from corota.plots.surface import outline
 if TYPE_CHECKING:
     from os import PathLike
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.model.contact import ContactPair
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Names and colors of the states of nodes.
 STATES = (("open", PALE), ("closed", COLORS[0]), ("slipping", COLORS[1]))

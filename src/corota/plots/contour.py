@@ -22,14 +22,12 @@ from corota.results.table import NODAL, POSITIVE
 if TYPE_CHECKING:
     from os import PathLike
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.mesh import Mesh
     from corota.model.units import Units
     from corota.results.results import Results
     from corota.results.source import ResultSource
 
-    Floats = NDArray[np.float64]
 
 #: Meshes with fewer cells show their edges by default.
 EDGES_UP_TO = 1500

@@ -27,12 +27,10 @@ from corota.plots.surface import outline
 if TYPE_CHECKING:
     from os import PathLike
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.results.members import Members
     from corota.results.section import Cut, SectionDiagram
 
-    Floats = NDArray[np.float64]
 
 #: Names of section forces, with their dimensions.
 NAMES = {
@@ -129,7 +127,7 @@ def section_forces(
         return finish(figure, path, dpi)
 
 
-def _smooth(left: Floats, nodes: NDArray[np.int64]) -> Floats:
+def _smooth(left: Floats, nodes: Ints) -> Floats:
     """Normals at the ends of lines, shape (n, 2, 2); the mean between two collinear lines."""
     side = np.repeat(left[:, None], 2, axis=1)
     begins, ends = (np.bincount(nodes[:, k], minlength=nodes.max() + 1) for k in (0, 1))

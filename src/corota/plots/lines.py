@@ -12,12 +12,10 @@ from corota.model.constraints import Coupling
 from corota.plots.figure import INK
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.model.model import Model
     from corota.model.sections import Section
 
-    Floats = NDArray[np.float64]
 
 #: Beams, bars, springs and links are distinct from cell edges and supports.
 BEAM, BAR, SPRING, LINK = "#35506e", "#8a5a2b", "#8c2f6b", "#9aa3ae"

@@ -27,11 +27,9 @@ from corota.results.averaging import section_of_cells
 if TYPE_CHECKING:
     from os import PathLike
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.model.model import Model
 
-    Floats = NDArray[np.float64]
 
 #: Colors of sections, pale enough for symbols above them.
 SHADES = ("#dbe7f3", "#fbe6d3", "#dcefe4", "#f3e0ec", "#f8efc9", "#e4e4ea")
@@ -179,7 +177,7 @@ def _sets(ax: Any, subject: Model) -> None:
         shown += 1
 
 
-def _spread(points: Floats, size: float) -> NDArray[np.int64]:
+def _spread(points: Floats, size: float) -> Ints:
     """Indices of spaced points: one in each square of a grid."""
     square = np.round(points / (APART * size)).astype(np.int64)
     _, first = np.unique(square, axis=0, return_index=True)

@@ -11,11 +11,9 @@ import numpy as np
 from corota.plots.figure import COLORS, INK
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.results.source import ResultSource
 
-    Floats = NDArray[np.float64]
 
 #: Marks of critical points: the scalar of their frames, the symbol, the name in the legend.
 MARKS = (("limit point", "o", "limit point"), ("bifurcation point", "D", "bifurcation point"))

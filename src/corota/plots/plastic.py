@@ -10,11 +10,8 @@ import numpy as np
 from corota.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Ints
     from corota.results.results import Results
-
-    Ints = NDArray[np.int64]
 
 
 def boundary(results: Results, frame: int = -1) -> Ints:

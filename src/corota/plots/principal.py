@@ -27,12 +27,9 @@ from corota.plots.surface import outline, surface
 if TYPE_CHECKING:
     from os import PathLike
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Crosses, and lines of force, along the longer side of the body and across it where it is thin.
 CROSSES, LINES = (45, 6), (24, 8)

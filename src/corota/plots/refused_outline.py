@@ -11,19 +11,18 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from os import PathLike
 
-    import numpy as np
-    from numpy.typing import NDArray
+    from corota.arrays import Floats
 
     class Line(Protocol):
         """Interface of a curve for pictures."""
 
-        points: NDArray[np.float64]
+        points: Floats
 
     class Refused(Protocol):
         """Interface of the error for pictures."""
 
         curves: Sequence[Line]
-        places: NDArray[np.float64]
+        places: Floats
 
 
 def refused_outline(

@@ -10,12 +10,10 @@ import numpy as np
 from corota.results.rigid import moved, rigid_curves
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.model.model import Model
     from corota.results.results import Frame
 
-    Floats = NDArray[np.float64]
 
 #: Color of rigid bodies, and the width of their shaded side as a share of the model's size.
 STEEL, BAND = "#5b6470", 0.018

@@ -12,12 +12,8 @@ from corota.mesh import EDGES
 from corota.mesh.shape_functions import shape_functions
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 def pattern(kind: str, parts: int) -> tuple[Floats, Ints]:
@@ -78,7 +74,7 @@ class Surface:
         return np.concatenate([p.reshape(-1, *p.shape[2:]) for p in parts])
 
 
-def surface(mesh: Mesh, chosen: NDArray[np.bool_]) -> Surface:
+def surface(mesh: Mesh, chosen: Bools) -> Surface:
     """Divide the chosen cells (mask over all cells) into triangles."""
     triangles, owner, pieces, start = [], [], [], 0
     total = int(chosen.sum())

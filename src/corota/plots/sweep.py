@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.arrays import Floats
+
     class Table(Protocol):
         """Interface of a sweep for pictures."""
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
         measures: list[str]
 
         def __getitem__(self, name: str) -> NDArray[Any]: ...
-        def column(self, name: str) -> NDArray[np.float64]: ...
+        def column(self, name: str) -> Floats: ...
 
 
 #: Most lines of one picture.

@@ -32,10 +32,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.arrays import Ints
     from corota.report.records import JobPaths
     from corota.results.results import Frame, Results
 
-    Ints = NDArray[np.int64]
 
 #: Size of a page [megabytes], of 10^6 bytes.
 LIMIT = 9.5

@@ -15,9 +15,9 @@ from corota.results.table import CONTACT, INVARIANTS, TABLE
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.arrays import Floats
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
 
 #: Vectors: name in the page to the names of their parts in files.
 VECTORS = {

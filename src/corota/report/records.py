@@ -19,11 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from os import PathLike
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
 
 #: Endings of the files of a job, longest first.
 ENDINGS = (

@@ -14,14 +14,11 @@ from corota.results.table import COMPONENTS, INVARIANTS, POSITIVE
 from corota.results.variables import STORED, averaged_value, invariant, stored_as
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.results.frame import Frame, PointFields
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: The order of operations, written into result files.
 AVERAGING = (
@@ -372,7 +369,7 @@ def cell_values(frame: Frame, name: str, n_cells: int) -> Floats:
     return out
 
 
-def cells_with(frame: Frame, name: str, n_cells: int) -> NDArray[np.bool_]:
+def cells_with(frame: Frame, name: str, n_cells: int) -> Bools:
     """Whether each cell has a variable at its points, shape (n_cells,)."""
     tensor = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0],))[0]
     out = np.zeros(n_cells, dtype=bool)

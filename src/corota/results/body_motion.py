@@ -12,9 +12,10 @@ from corota.display import Brief
 from corota.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
+
 
 #: Rotation [rad] below which a center of rotation has no place.
 LEAST_ROTATION = 1e-9

@@ -15,10 +15,7 @@ from corota.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
 
 
 class PointValues(Protocol):

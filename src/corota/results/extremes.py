@@ -16,14 +16,10 @@ from corota.results.variables import match_name, point_value
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.results.frame import Frame, PointFields
     from corota.results.source import ResultSource
 
-    Floats = NDArray[np.float64]
-    Bools = NDArray[np.bool_]
-    Ints = NDArray[np.int64]
 
 #: Numbers of an extreme in result files: value, index of the cell, point from 0, position.
 WIDTH = 5

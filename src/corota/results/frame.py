@@ -11,11 +11,7 @@ from corota.display import Brief
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
+    from corota.arrays import Bools, Floats, Ints
 
 
 @dataclass(repr=False)
@@ -133,6 +129,6 @@ class Frame(Brief):
     section_averages: dict[int, Mapping[str, Floats]] = field(default_factory=dict)
     extremes: Mapping[str, Floats] = field(default_factory=dict)
     T: Floats | None = None
-    cells_with: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
+    cells_with: dict[str, Bools] = field(default_factory=dict)
     absent: frozenset[str] = frozenset()
     H: Floats | None = None

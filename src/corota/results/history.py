@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from os import PathLike
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats
     from corota.results.extremes import Extreme
     from corota.results.source import ResultSource
 
-    Floats = NDArray[np.float64]
 
 # A convenience: a function of a higher layer, which loads at its first call.
 draw_curve = lazy("corota.plots:curve")

@@ -16,12 +16,11 @@ from corota.lazy import lazy
 if TYPE_CHECKING:
     from os import PathLike
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats, Ints
     from corota.results.source import ResultSource
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 # A convenience: a function of a higher layer, which loads at its first call.
 draw_forces = lazy("corota.plots:section_forces")

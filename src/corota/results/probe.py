@@ -21,13 +21,12 @@ from corota.results.sampling import sampled
 if TYPE_CHECKING:
     from os import PathLike
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
     from corota.results.source import ResultSource
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 # A convenience: a function of a higher layer, which loads at its first call.
 draw_along = lazy("corota.plots:along")

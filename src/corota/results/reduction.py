@@ -26,12 +26,10 @@ from corota.results.variables import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Ints
     from corota.results.frame import Frame
     from corota.results.source import ResultSource
 
-    Ints = NDArray[np.int64]
 
 #: Reducers over the nodes.
 REDUCERS = ("auto", "sum", "mean", "max", "min", "absmax")

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.model.paths import CriticalPoint, Modes
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from corota.results.section import SectionDiagram, SectionForces
     from corota.results.stage_results import StageResults
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 # Conveniences: functions of higher layers, which load at their first call.
 draw_contour = lazy("corota.plots:contour")
@@ -232,7 +230,7 @@ class Results(Brief):
 
         return extremes(self, name, frame, at)
 
-    def cells_with(self, name: str, index: int = -1) -> NDArray[np.bool_]:
+    def cells_with(self, name: str, index: int = -1) -> Bools:
         """Whether each cell has a variable at its points, shape (n_cells,)."""
         from corota.results.averaging import cells_with
 

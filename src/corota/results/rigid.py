@@ -11,12 +11,9 @@ import numpy as np
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.model.model import Model
     from corota.results.results import Frame
-
-    Floats = NDArray[np.float64]
 
 
 def rigid_curves(model: Model) -> list[RigidCurve]:

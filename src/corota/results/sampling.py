@@ -13,11 +13,8 @@ from corota.results.table import COMPONENTS, INVARIANTS, POSITIVE
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.results.source import ResultSource
-
-    Floats = NDArray[np.float64]
 
 
 def sampled(

@@ -21,14 +21,13 @@ from corota.model import elements
 from corota.results.history import History
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
     from corota.results.frame import Frame
     from corota.results.source import ResultSource
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 # A convenience: a function of a higher layer, which loads at its first call.
 draw_diagram = lazy("corota.plots:section_diagram")
@@ -94,7 +93,7 @@ class _Crossing:
     kind: str
     cells: Ints
     nodes: Ints
-    ahead: NDArray[np.bool_]
+    ahead: Bools
     # Of each cell the ends of its part of the cut: nodes and share between them.
     ends: Ints  # (n, 2, 2)
     share: Floats  # (n, 2)
@@ -474,7 +473,7 @@ def _resultant(where: Floats, values: Floats, center: Floats) -> tuple[Floats, f
     return values[:, :2].sum(axis=0), float(moment.sum())
 
 
-def _mask(mesh: Mesh, cells: str | ArrayLike | None) -> NDArray[np.bool_]:
+def _mask(mesh: Mesh, cells: str | ArrayLike | None) -> Bools:
     if cells is None:
         return np.ones(mesh.n_cells, dtype=bool)
     mask = np.zeros(mesh.n_cells, dtype=bool)

@@ -6,17 +6,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.averaging import Averaging
     from corota.results.frame import Frame
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 class ResultSource(Protocol):
@@ -49,7 +44,7 @@ class ResultSource(Protocol):
 
     def cells(self, name: str, index: int = -1) -> Floats: ...
 
-    def cells_with(self, name: str, index: int = -1) -> NDArray[np.bool_]: ...
+    def cells_with(self, name: str, index: int = -1) -> Bools: ...
 
     def history(self, name: str, at: Any = None) -> Any: ...
 

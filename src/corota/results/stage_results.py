@@ -17,11 +17,11 @@ from corota.results.measures import COMPONENTS
 if TYPE_CHECKING:
     from os import PathLike
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats
     from corota.results.source import ResultSource
 
-    Floats = NDArray[np.float64]
 
 # A convenience: a function of a higher layer, which loads at its first call.
 write_spring = lazy("corota.io.tables.spring:write_spring")

@@ -25,14 +25,11 @@ from corota.results.table import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.model.units import Units
     from corota.results.frame import Frame, PointFields
     from corota.results.table import Variable
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Forces of the nodes on the elements, in files.
 FORCES = "nodal forces"

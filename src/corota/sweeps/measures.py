@@ -17,11 +17,9 @@ from corota.results.reduction import is_summed
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.results.results import Results
 
-    Floats = NDArray[np.float64]
 
 #: Reducers of a history to one number.
 REDUCERS: dict[str, Callable[[Floats], float]] = {

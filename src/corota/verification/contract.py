@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
 
 
 def random_path(seed: int, corners: int = 11, steps: int = 6, size: float = 0.004) -> Floats:

@@ -23,15 +23,14 @@ from corota.results.observer import BaseObserver
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Floats, Ints
     from corota.mesh.generate import Diagonal, Kind
     from corota.model.steps import Step
     from corota.results.observer import Iteration
     from corota.results.results import Frame, Results
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Every registered planar element.
 ELEMENTS = elements.names()

@@ -13,8 +13,7 @@ from corota.model.plasticity import Mises
 from corota.verification.models import DRILLING, ELEMENTS, cell
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Ints
     from corota.mesh import Mesh
     from corota.model.materials import Material
 
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 CELL: dict[str, Any] = {name: cell(name) for name in ELEMENTS}
 
 
-def find(mesh: Mesh, axis: int, value: float) -> NDArray[np.int64]:
+def find(mesh: Mesh, axis: int, value: float) -> Ints:
     """Nodes with a coordinate."""
     size = float(np.ptp(mesh.points, axis=0).max())
     return np.flatnonzero(np.abs(mesh.points[:, axis] - value) < 1e-9 * size)

@@ -28,11 +28,9 @@ if TYPE_CHECKING:
     from corota.analysis.linear.matrix import SymmetricPattern
     from corota.analysis.linear.reduction import Rows
     from corota.analysis.linear.types import Kind, Sparse
+    from corota.arrays import Floats, Ints
     from corota.errors import Location
     from corota.model.model import Model
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 @dataclass(eq=False)

@@ -15,10 +15,8 @@ if TYPE_CHECKING:
     from corota.analysis.linear.matrix import SymmetricPattern
     from corota.analysis.linear.triplets import Triplets
     from corota.analysis.linear.types import Kind, Sparse
+    from corota.arrays import Floats, Ints
     from corota.model.model import Model
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 class Identity(LinearizedConstraints):

@@ -14,12 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.errors import Location
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 @dataclass
@@ -95,7 +91,7 @@ class LinearRelation(Relation):
 
     row: Floats
     constant: float
-    rotates: NDArray[np.bool_]
+    rotates: Bools
 
     def values(self, u: Floats) -> Floats:
         """See :class:`Relation`."""

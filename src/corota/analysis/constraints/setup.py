@@ -17,11 +17,10 @@ from corota.model.contact import RigidCurve, is_gap, of_gap
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.arrays import Bools, Floats, Ints
     from corota.errors import Location
     from corota.model.model import Model
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 NAMES = ("x", "y", "rotation")
 #: Nodes of a straight line may be off it by this fraction of its length; the offset is removed.
@@ -34,7 +33,7 @@ def _nodes(model: Model, where: str | Ints) -> Ints:
     return np.asarray(where, np.int64)
 
 
-def extra_dofs(model: Model, in_element: NDArray[np.bool_]) -> NDArray[np.uint8]:
+def extra_dofs(model: Model, in_element: Bools) -> NDArray[np.uint8]:
     """Dofs that constraints give to nodes, shape (n_nodes,); empty without constraints.
 
     Reference nodes get a rotation; nodes without elements get the dofs that constraints use.

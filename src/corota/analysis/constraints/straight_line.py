@@ -13,9 +13,8 @@ from corota.analysis.constraints.relations import Relation
 from corota.analysis.failure import ElementFailure
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: The axis of the dependent displacement may come this close to the line (sine of the angle).
 CLOSEST = 1e-3

@@ -22,14 +22,11 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.linear.factor import Factor
     from corota.analysis.linear.types import Sparse
     from corota.analysis.terms.linearized import LinearMotion
+    from corota.arrays import Complex, Floats
 
-    Floats = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
 
 #: Unknowns up to which the dense eigenvalue solver is faster.
 DENSE = 150

@@ -12,12 +12,9 @@ from corota.analysis.linear.solvers import Multifrontal
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.linear.types import Sparse
+    from corota.arrays import Bools, Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Relative size of a product that consists of rounding errors only.
 NULL = 1e-9
@@ -51,7 +48,7 @@ class Factor:
         matrix: Sparse,
         symmetric: bool,
         node: Ints,
-        multiplier: NDArray[np.bool_],
+        multiplier: Bools,
         threads: int,
     ) -> None:
         self.negative = -1
@@ -72,9 +69,7 @@ class Factor:
         solver.factorize(matrix.data)
         self._solver = solver
 
-    def _symmetric(
-        self, matrix: Sparse, node: Ints, multiplier: NDArray[np.bool_], threads: int
-    ) -> None:
+    def _symmetric(self, matrix: Sparse, node: Ints, multiplier: Bools, threads: int) -> None:
         upper = sp.triu(matrix).tocsc()
         upper.sort_indices()
         solver = Multifrontal()

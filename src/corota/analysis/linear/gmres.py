@@ -11,11 +11,9 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.linear.triplets import Triplets
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Relative residual that is enough, and largest number of steps.
 TOLERANCE, MOST_STEPS = 1e-9, 60

@@ -17,9 +17,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Vectors in a block: a double eigenvalue is found together.
 BLOCK = 2

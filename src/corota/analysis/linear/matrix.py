@@ -18,15 +18,11 @@ import numpy as np
 from corota.analysis.parallel.communicator import ALONE
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota._core import Problem
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.linear.types import Index, Sparse
     from corota.analysis.parallel.communicator import Communicator
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
+    from corota.arrays import Bools, Floats, Ints
 
 
 class SymmetricPattern:
@@ -63,7 +59,7 @@ class SymmetricPattern:
             self.communicator = communicator
         self.indptr, self.indices, self.node, self.after = indptr, indices, node, after
         self.n, self.nnz = len(indptr) - 1, len(indices)
-        self._constrained: NDArray[np.bool_] | None = None
+        self._constrained: Bools | None = None
         self._masked = np.zeros(0, np.int64)
 
     # -- places ------------------------------------------------------------------------
@@ -90,15 +86,13 @@ class SymmetricPattern:
         """Numbers that sort the entries by columns and rows, shape (nnz,)."""
         return self.columns * self.n + self.rows
 
-    def places(self, rows: Ints, columns: Ints) -> tuple[Ints, NDArray[np.bool_]]:
+    def places(self, rows: Ints, columns: Ints) -> tuple[Ints, Bools]:
         """Places of entries (row <= column), and whether the pattern has them."""
         wanted = np.asarray(columns, np.int64) * self.n + np.asarray(rows, np.int64)
         found = np.searchsorted(self.keys, wanted)
         return found, np.take(self.keys, found, mode="clip") == wanted
 
-    def owned_places(
-        self, rows: Ints, columns: Ints
-    ) -> tuple[Ints, NDArray[np.bool_], NDArray[np.bool_]]:
+    def owned_places(self, rows: Ints, columns: Ints) -> tuple[Ints, Bools, Bools]:
         """Places of entries (row <= column) that all processes want to add.
 
         Returns
@@ -178,7 +172,7 @@ class SymmetricPattern:
         out: Floats = upper @ x + upper.T @ x - values[self.diagonal] * x
         return self.communicator.sum(out)
 
-    def mask(self, values: Floats, constrained: NDArray[np.bool_]) -> None:
+    def mask(self, values: Floats, constrained: Bools) -> None:
         """Replace rows and columns of constrained unknowns by a positive diagonal, in place."""
         if self._constrained is None or not np.array_equal(constrained, self._constrained):
             self._constrained = constrained.copy()
@@ -189,9 +183,7 @@ class SymmetricPattern:
         size = np.abs(values[diagonal])
         values[diagonal] = np.where(size > 0.0, size, 1.0)
 
-    def impose(
-        self, values: Floats, rhs: Floats, moved: Floats, constrained: NDArray[np.bool_]
-    ) -> None:
+    def impose(self, values: Floats, rhs: Floats, moved: Floats, constrained: Bools) -> None:
         """Move prescribed changes to the right-hand side and mask their equations, in place.
 
         Parameters
@@ -233,16 +225,14 @@ class AssembledPattern(SymmetricPattern):
         out: Floats = self._core.multiply(values, x)
         return self.communicator.sum(out)
 
-    def impose(
-        self, values: Floats, rhs: Floats, moved: Floats, constrained: NDArray[np.bool_]
-    ) -> None:
+    def impose(self, values: Floats, rhs: Floats, moved: Floats, constrained: Bools) -> None:
         """See :meth:`SymmetricPattern.impose`."""
         if self.communicator.size > 1:
             super().impose(values, rhs, moved, constrained)
             return
         self._core.reduce(values, rhs, moved, constrained)
 
-    def mask(self, values: Floats, constrained: NDArray[np.bool_]) -> None:
+    def mask(self, values: Floats, constrained: Bools) -> None:
         """See :meth:`SymmetricPattern.mask`."""
         self._core.mask(values, constrained)
 

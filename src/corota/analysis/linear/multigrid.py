@@ -15,13 +15,12 @@ from corota.analysis.linear.petsc import Petsc
 from corota.errors import UnsupportedError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
     from petsc4py import PETSc
 
     from corota.analysis.linear.types import Index
     from corota.analysis.parallel.communicator import Communicator
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Relative residual of a solution, and iterations after which there is none.
 TOLERANCE, MOST = 1e-10, 2000

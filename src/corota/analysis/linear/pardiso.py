@@ -14,12 +14,10 @@ import numpy as np
 from corota.errors import ResourceError, SingularError, UnsupportedError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.linear.types import Index
+    from corota.arrays import Floats
 
     Inertia = tuple[int, int, int]
-    Floats = NDArray[np.float64]
 
 #: Matrix types of PARDISO: real symmetric indefinite, real unsymmetric.
 _SYMMETRIC, _UNSYMMETRIC = -2, 11

@@ -16,14 +16,13 @@ from corota.errors import ResourceError, SingularError, UnsupportedError
 if TYPE_CHECKING:
     from types import ModuleType
 
-    from numpy.typing import NDArray
     from petsc4py import PETSc
 
     from corota.analysis.linear.types import Index
     from corota.analysis.parallel.communicator import Communicator
+    from corota.arrays import Floats
 
     Inertia = tuple[int, int, int]
-    Floats = NDArray[np.float64]
 
 #: Controls of MUMPS: memory above the estimate [percent], detection of null pivots, vector of the
 #: null space to solve for, parallel factorization of the root, which hides the inertia (1: none).

@@ -11,12 +11,9 @@ import numpy as np
 from corota.analysis.linear.matrix import SymmetricPattern
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.linear.types import Sparse
+    from corota.arrays import Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     #: Key, entry, two places of numbers, and factor of each product.
     Products = tuple[Ints, Ints, Ints, Ints, Floats]
 

@@ -13,12 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.linear.types import Index
     from corota.analysis.parallel.communicator import Communicator
+    from corota.arrays import Bools, Floats
 
-    Floats = NDArray[np.float64]
     Ints = Index
 
 
@@ -104,9 +102,7 @@ class Rows:
         owner: Ints = (size - 1 - code % size)[node]
         return owner
 
-    def _lay_out(
-        self, row: Ints, column: Ints, bounds: Ints, loose: NDArray[np.bool_]
-    ) -> list[Any]:
+    def _lay_out(self, row: Ints, column: Ints, bounds: Ints, loose: Bools) -> list[Any]:
         """Entries for each process; places of those of the other processes."""
         from scipy.sparse import coo_array
 

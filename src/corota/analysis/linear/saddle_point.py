@@ -26,17 +26,14 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.coupling import Coupling
     from corota.analysis.linear.system import LinearSystem
     from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.timer import Timer
+    from corota.arrays import Bools, Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Independent fraction of a constraint below which it is dropped, and the largest number of
 #: constraints for this test.
@@ -62,7 +59,7 @@ class Reduced(Protocol):
     free_motion_excluded: bool
 
     @property
-    def constrained(self) -> NDArray[np.bool_]:
+    def constrained(self) -> Bools:
         """Dofs that supports prescribe."""
         ...
 
@@ -105,7 +102,7 @@ class SaddlePointSystem:
         )
         self.after = self.nf + np.arange(n)
         self.keys = np.zeros(0, np.int64)
-        self._held: NDArray[np.bool_] | None = None
+        self._held: Bools | None = None
         #: The last system solved: its prescribed unknowns, constraints and solver.
         self._at_rest = np.zeros(self.size, bool)
         self._link: LinearizedConstraints = system.link
@@ -148,7 +145,7 @@ class SaddlePointSystem:
         self.diagonal, self._border_begins = self.pattern.diagonal, start[self.nf]
         self._held = None
 
-    def _mask(self, constrained: NDArray[np.bool_]) -> Ints:
+    def _mask(self, constrained: Bools) -> Ints:
         """Positions of the off-diagonal entries of prescribed unknowns."""
         if self._held is None or not np.array_equal(constrained, self._held):
             self._held = constrained.copy()

@@ -19,13 +19,12 @@ from corota.lazy import lazy
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
     from scipy.sparse.linalg import SuperLU as Factors
 
     from corota.analysis.linear.types import Index
+    from corota.arrays import Floats
 
     Inertia = tuple[int, int, int]
-    Floats = NDArray[np.float64]
 
 
 @runtime_checkable

@@ -6,20 +6,14 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from corota.analysis.linear.unsymmetric import MaskedLu
 from corota.analysis.timer import Timer
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.linear.matrix import SymmetricPattern
     from corota.analysis.linear.solvers import Inertia, LinearSolver
     from corota.analysis.linear.types import Sparse
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
+    from corota.arrays import Bools, Floats, Ints
 
 
 class LinearSystem:
@@ -69,9 +63,7 @@ class LinearSystem:
         self.last = self.solver
         return inertia
 
-    def factorize_unsymmetric(
-        self, matrix: Sparse, constrained: NDArray[np.bool_], node: Ints
-    ) -> None:
+    def factorize_unsymmetric(self, matrix: Sparse, constrained: Bools, node: Ints) -> None:
         """Factorize a scipy CSC matrix with diagonal rows and columns of constrained unknowns.
 
         Raises

@@ -10,12 +10,10 @@ import numpy as np
 
 if TYPE_CHECKING:
     import scipy.sparse as sp
-    from numpy.typing import NDArray
 
     from corota.analysis.linear.types import Index, Sparse
+    from corota.arrays import Bools, Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Skew part of a matrix, relative to its largest entry, that is rounding.
 SKEW = 1e-9
@@ -40,7 +38,7 @@ class Triplets:
             np.concatenate([p.values for p in parts]),
         )
 
-    def keep(self, chosen: NDArray[np.bool_]) -> Triplets:
+    def keep(self, chosen: Bools) -> Triplets:
         """Some of the entries."""
         return Triplets(self.rows[chosen], self.columns[chosen], self.values[chosen])
 

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     import scipy.sparse as sp
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
     #: Kind of numbers of an array that is taken apart only.
     Kind = TypeVar("Kind", bound=np.generic)
     #: What processes send to one another.

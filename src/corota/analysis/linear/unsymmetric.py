@@ -11,13 +11,9 @@ from corota.analysis.linear.solvers import Multifrontal
 from corota.arrays import distinct
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.linear.matrix import SymmetricPattern
     from corota.analysis.linear.types import Index, Sparse
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
+    from corota.arrays import Bools, Floats, Ints
 
 
 class FullMatrix:
@@ -82,7 +78,7 @@ class MaskedLu:
         self._indices: Index = self._indptr
         self._held = np.zeros(0, bool)
 
-    def factorize(self, matrix: Sparse, constrained: NDArray[np.bool_], node: Ints) -> None:
+    def factorize(self, matrix: Sparse, constrained: Bools, node: Ints) -> None:
         """Factorize a scipy CSC matrix with diagonal rows and columns of prescribed dofs.
 
         Raises
@@ -124,7 +120,7 @@ def entries_of(matrix: Sparse) -> tuple[Index, Index]:
     return matrix.indices, np.repeat(np.arange(len(counts)), counts)
 
 
-def diagonal_of(matrix: Sparse) -> NDArray[np.bool_]:
+def diagonal_of(matrix: Sparse) -> Bools:
     """Which diagonal entries a scipy CSC matrix has a place for."""
     rows, columns = entries_of(matrix)
     has = np.zeros(matrix.shape[0], bool)

@@ -21,14 +21,10 @@ from corota.model.blocks import blocks_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from corota.analysis.parallel.communicator import Communicator
+    from corota.arrays import Floats, Ints
     from corota.model.blocks import BlockOfCells
     from corota.model.model import Model
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 def own_blocks(

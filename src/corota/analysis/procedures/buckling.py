@@ -27,14 +27,12 @@ from corota.model.paths import Modes
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
+    from corota.arrays import Floats
     from corota.model.steps import Buckle
 
-    Floats = NDArray[np.float64]
 
 #: Largest displacement of the difference, as a share of the model's size.
 DIFFERENCE = 1e-5

@@ -17,12 +17,10 @@ from corota.analysis.terms.linearized import Linearized
 from corota.errors import ConvergenceError, ModelError, UnsupportedError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.terms.conditions import Conditions
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Displacement of the differences, as a share of the model's size.
 DIFFERENCE = 1e-5
@@ -95,7 +93,7 @@ def factors_with_contact(
     return 1.0 / theta.real[real][order], shapes
 
 
-def _change(base: Linearized, z: Floats, loads: Conditions, moved: float) -> NDArray[np.float64]:
+def _change(base: Linearized, z: Floats, loads: Conditions, moved: float) -> Floats:
     """Derivative of the stiffness along a response, a sparse matrix of all unknowns."""
     system = base.system
     size = DIFFERENCE * system.length / moved
@@ -127,5 +125,5 @@ def _change(base: Linearized, z: Floats, loads: Conditions, moved: float) -> NDA
         triplets = (triplets[0], triplets[1], -triplets[2])
     if triplets is not None or own.any():
         change = change + base.padded(base.reduce(own, triplets))
-    found: NDArray[np.float64] = change.tocsc()
+    found: Floats = change.tocsc()
     return found

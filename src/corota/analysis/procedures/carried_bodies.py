@@ -17,12 +17,9 @@ import numpy as np
 from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
+    from corota.arrays import Bools, Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Rotation in an increment [rad] from which bodies are carried, and displacement over the size of
 #: the model from which one looks.
@@ -106,7 +103,7 @@ def _bodies(system: System) -> Ints:
 
 
 def _motion(
-    x: Floats, y: Floats, turn: Floats, given: NDArray[np.bool_]
+    x: Floats, y: Floats, turn: Floats, given: Bools
 ) -> tuple[float, Floats, Floats] | None:
     """Rotation and centers of the rigid motion that supports prescribe, if they prescribe one."""
     placed = given[:, 0] & given[:, 1]

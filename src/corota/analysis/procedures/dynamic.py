@@ -39,15 +39,13 @@ from corota.model.schemes import SCHEMES
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
+    from corota.arrays import Bools, Floats
     from corota.model.loads import Amplitude
     from corota.model.steps import Dynamic
 
-    Floats = NDArray[np.float64]
 
 #: An automatic increment aims at this share of the allowed local error.
 AIM = 0.7
@@ -146,7 +144,7 @@ class DynamicStepper(NewtonStepper):
         loop.show_start(scalars)
 
     @cached_property
-    def _judged(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
+    def _judged(self) -> tuple[Bools, Bools, Bools]:
         """Dofs without a local error, nodes with one, and nodes whose motion it is relative to."""
         system, massless = self.system, self.inertia.massless
         known = massless | system.conditions.constrained
@@ -399,9 +397,9 @@ def _local_error(
     system: System,
     motion: NewmarkMotion | ConservingMotion,
     step: Dynamic,
-    known: NDArray[np.bool_],
-    moves: NDArray[np.bool_],
-    counts: NDArray[np.bool_],
+    known: Bools,
+    moves: Bools,
+    counts: Bools,
 ) -> float:
     """Local error of displacement over the allowed one (Zienkiewicz & Xie 1991).
 

@@ -21,15 +21,13 @@ from corota.analysis.terms.inertia import Inertia
 from corota.errors import ConvergenceError, InputError, ModelError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.procedures.explicit_constraints import FreeMass
     from corota.analysis.terms.term import StatePoint
+    from corota.arrays import Bools, Floats
     from corota.model.steps import Dynamic
 
-    Floats = NDArray[np.float64]
 
 #: Share of the stable increment that automatic increments take.
 SAFETY = 0.9
@@ -94,7 +92,7 @@ def stable_increment(system: System, u: Floats, mass: FreeMass) -> float:
     return 2.0 / float(np.sqrt(largest)) if largest > 0.0 else np.inf
 
 
-def _refuse_idle(system: System, idle: NDArray[np.bool_], what: str) -> None:
+def _refuse_idle(system: System, idle: Bools, what: str) -> None:
     """Refuse the first of some free dofs without mass."""
     if idle.any():
         raise ModelError(
@@ -578,7 +576,7 @@ class Known:
         return self.first + self.worked + self.freed + abs(pending)
 
 
-def _refuse_pushed(system: System, idle: NDArray[np.bool_], at: Evaluation) -> None:
+def _refuse_pushed(system: System, idle: Bools, at: Evaluation) -> None:
     """Refuse forces at free dofs without mass, which would follow at once."""
     if idle.any():
         largest = max(float(at.scale.max()), float(np.abs(at.external).max()))

@@ -20,14 +20,11 @@ import numpy as np
 from corota.errors import ConvergenceError, UnsupportedError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.equations import System
+    from corota.arrays import Bools, Floats
     from corota.errors import Location
 
-    Floats = NDArray[np.float64]
-    Bools = NDArray[np.bool_]
 
 #: Unbalanced force relative to the largest that ends the iteration, and that may remain.
 BALANCED, ROUNDED = 1e-11, 1e-7
@@ -207,7 +204,7 @@ class ReducedMass(FreeMass):
             "increment, or an implicit scheme"
         )
 
-    def refuse_contact(self, mine: NDArray[np.bool_], where: Location | None) -> None:
+    def refuse_contact(self, mine: Bools, where: Location | None) -> None:
         """Refuse contact at nodes whose motion is coupled to that of others by mass.
 
         Parameters

@@ -15,11 +15,9 @@ from corota.arrays import distinct
 from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: A body that turns by more in an increment starts from where it is [rad].
 LARGEST_TURN = 1.0

@@ -24,15 +24,12 @@ from corota.model.paths import Modes
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
+    from corota.arrays import Complex, Floats
     from corota.model.steps import Frequency
 
-    Floats = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
 
 #: Growth relative to the eigenvalue's size from which a mode is unstable.
 GROWS = 1e-6

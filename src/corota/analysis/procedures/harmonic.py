@@ -22,15 +22,12 @@ from corota.errors import ModelError, SingularError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
+    from corota.arrays import Complex, Floats
     from corota.model.steps import SteadyState, Step
 
-    Floats = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
     Answer = Callable[[float, Complex, Complex], Complex]
 
 #: An undamped system whose matrix is as small as this at a frequency is in resonance.

@@ -11,13 +11,10 @@ import numpy as np
 from corota.results.invariants import mises
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
+    from corota.arrays import Complex, Floats
     from corota.results.results import PointFields
 
-    Floats = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
 
 #: Displacement of the differences, as a share of the model's size.
 SIZE = 3e-5

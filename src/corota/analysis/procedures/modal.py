@@ -18,15 +18,13 @@ from corota.analysis.terms.complex_stiffness import relaxing_note
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.analysis.terms.linearized import LinearMotion
+    from corota.arrays import Floats
     from corota.model.steps import ModalDynamic
 
-    Floats = NDArray[np.float64]
 
 #: Two times closer than this share of the period are the same.
 SAME_TIME = 1e-9

@@ -15,17 +15,14 @@ from corota.analysis.terms.inertia import MotionState
 from corota.analysis.terms.term import StatePoint
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.damping import Damping
     from corota.analysis.terms.elements import Elements
     from corota.analysis.terms.inertia import Inertia
+    from corota.arrays import Bools, Floats
     from corota.model.schemes import Scheme
-
-    Floats = NDArray[np.float64]
 
 
 @dataclass
@@ -39,7 +36,7 @@ class Driven:
         Displacement, velocity and acceleration, which mean nothing elsewhere.
     """
 
-    constrained: NDArray[np.bool_]
+    constrained: Bools
     u: Floats
     v: Floats
     a: Floats

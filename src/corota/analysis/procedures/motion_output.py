@@ -10,13 +10,10 @@ import numpy as np
 from corota.analysis.evaluation import Evaluation
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.procedures.motion import ConservingMotion, NewmarkMotion
     from corota.analysis.terms.inertia import MotionState
-
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
 
 
 class EndForces:

@@ -15,15 +15,13 @@ from corota.errors import ModelError
 from corota.model import elements
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.state import State
     from corota.analysis.terms.viscous import ViscousElements
+    from corota.arrays import Floats
     from corota.model.steps import Dynamic
 
-    Floats = NDArray[np.float64]
 
 #: Share of the increment whose square weighs the stiffness in the first accelerations.
 TRACE = 1e-3

@@ -25,15 +25,13 @@ from corota.analysis.terms.linearized import spin
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.state import State
     from corota.analysis.terms.linearized import LinearMotion
+    from corota.arrays import Floats
     from corota.model.paths import Modes
     from corota.model.steps import ModalDamping, ModalDynamic, SteadyState, Step
 
-    Floats = NDArray[np.float64]
 
 #: Part of a vector, relative to the largest so far, that makes no pattern of its own.
 NEW = 1e-10

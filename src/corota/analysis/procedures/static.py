@@ -25,8 +25,6 @@ from corota.model.rates import Norton
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.increment_loop import ContactIncrement, Report
@@ -34,10 +32,10 @@ if TYPE_CHECKING:
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.analysis.terms.contact.equations import ContactEquations
+    from corota.arrays import Floats
     from corota.model.materials import Material
     from corota.model.steps import Static
 
-    Floats = NDArray[np.float64]
 
 # What a step without difficulties does not need.
 at_limit = lazy("corota.analysis.procedures.stopping:at_limit")

@@ -8,12 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
+    from corota.arrays import Floats, Ints
 
 
 class Attachments:

@@ -20,14 +20,11 @@ from corota.model.materials import Elastic
 from corota.model.viscoelastic import Viscoelastic
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.linearized import LinearMotion
+    from corota.arrays import Complex, Floats
     from corota.model.blocks import BlockOfCells
 
-    Floats = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
 
 #: Ratios between which a stiffness is interpolated where they change: its error is below 1e-8 for
 #: shares up to 0.9.

@@ -42,17 +42,13 @@ from corota.model.loads import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from numpy.typing import NDArray
-
     from corota.analysis.distributed import DistributedLoad
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.term import StatePoint
+    from corota.arrays import Bools, Floats, Ints
     from corota.model.loads import Fixed, Load
     from corota.model.steps import Step
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 #: Procedures whose state stays as it is.
@@ -114,7 +110,7 @@ class Conditions(Term):
         self._starting = False
 
     @property
-    def constrained(self) -> NDArray[np.bool_]:
+    def constrained(self) -> Bools:
         """Dofs with a prescribed value, shape (n_dofs,)."""
         return self.supports.constrained
 
@@ -243,15 +239,13 @@ class Conditions(Term):
             if isinstance(load.item, EdgeLoad) and load.item.kind == "penetrating pressure"
         ]
 
-    def begin_fluids(self, contact: Floats, soft: NDArray[np.bool_], u: Floats) -> None:
+    def begin_fluids(self, contact: Floats, soft: Bools, u: Floats) -> None:
         """Put the fronts of fluids where the committed contact pressures allow them."""
         for load in self.fluids:
             load.force.begin(contact, soft, u)  # type: ignore[attr-defined]
         self._known = {}
 
-    def advance_fluids(
-        self, contact: Floats, soft: NDArray[np.bool_], u: Floats, step_time: float
-    ) -> bool:
+    def advance_fluids(self, contact: Floats, soft: Bools, u: Floats, step_time: float) -> bool:
         """Advance the fronts of fluids at an equilibrium; False where all stand."""
         moved = [
             load.force.advance(contact, soft, self.scale(load, step_time), u)  # type: ignore[attr-defined]

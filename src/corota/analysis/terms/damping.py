@@ -11,14 +11,11 @@ from corota.analysis.terms.term import Term
 from corota.analysis.terms.viscous import ViscousElements
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.inertia import Inertia
     from corota.analysis.terms.term import StatePoint
-
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
 
 
 class Damping(Term):

@@ -13,13 +13,10 @@ from corota.model.element_changes import ElementChange
 from corota.model.user_material import UserMaterial
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.numbered_model import NumberedModel
+    from corota.arrays import Bools, Floats, Ints
     from corota.model.steps import Step
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Procedures that may change the structure.
 CHANGING = ("static", "dynamic")
@@ -105,7 +102,7 @@ class ElementChanges:
         out = [bool(self.removed[block.cells[0]]) for block in system.own_blocks]
         system.core.set_removed(out if any(out) else [])
 
-    def bare(self) -> NDArray[np.bool_]:
+    def bare(self) -> Bools:
         """Dofs of nodes that had elements and have none any more, but those of constraints."""
         system = self.system
         had, has = np.zeros((2, system.model.mesh.n_nodes), bool)
@@ -113,7 +110,7 @@ class ElementChanges:
             had[block.nodes] = True
             if not self.removed[block.cells[0]]:
                 has[block.nodes] = True
-        bare: NDArray[np.bool_] = (had & ~has)[system.node_of_dof]
+        bare: Bools = (had & ~has)[system.node_of_dof]
         if isinstance(system.constraints, Constraints):
             free = np.zeros(system.n_dofs, bool)
             free[system.constraints.free] = True

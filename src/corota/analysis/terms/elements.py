@@ -16,16 +16,13 @@ from corota.model import elements
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from numpy.typing import NDArray
-
     from corota._core import Problem
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.conditions import Conditions
     from corota.analysis.terms.term import StatePoint
+    from corota.arrays import Floats
     from corota.model.steps import Step
-
-    Floats = NDArray[np.float64]
 
 
 class Elements(Term):

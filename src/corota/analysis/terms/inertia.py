@@ -14,16 +14,13 @@ from corota.analysis.terms.redistribution import set_moving_mass
 from corota.analysis.terms.term import Term
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.term import StatePoint
+    from corota.arrays import Bools, Floats
     from corota.model.steps import Step
     from corota.results.results import PointFields
-
-    Floats = NDArray[np.float64]
 
 
 @dataclass
@@ -88,9 +85,7 @@ class Inertia(Term):
 
     name = "inertia"
 
-    def __init__(
-        self, system: System, kind: str, massless: NDArray[np.bool_] | None = None
-    ) -> None:
+    def __init__(self, system: System, kind: str, massless: Bools | None = None) -> None:
         self.system, self.kind = system, kind
         self.attached = Attachments(system)
         self.remark = set_moving_mass(system, kind, massless)

@@ -31,9 +31,8 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.linear.coupling import Coupling
     from corota.analysis.linear.types import Kind, Sparse
+    from corota.arrays import Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     #: Rows, columns and values.
     Entries = tuple[Ints, Ints, Floats]
 

@@ -14,12 +14,9 @@ from corota.model.loads import Amplitude
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
     from corota.analysis.load_history import LoadHistory
+    from corota.arrays import Floats
     from corota.errors import Location
-
-    Floats = NDArray[np.float64]
 
 
 class LoadFactors:

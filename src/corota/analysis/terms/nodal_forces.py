@@ -11,14 +11,10 @@ from corota.analysis.load_history import LoadHistory
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.load_factors import LoadFactors
+    from corota.arrays import Floats, Ints
     from corota.model.loads import NodalForce
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 class NodalForces:

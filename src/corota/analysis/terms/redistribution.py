@@ -16,11 +16,9 @@ import numpy as np
 from corota.mesh.parts import part_of_cells
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.numbered_model import NumberedModel
+    from corota.arrays import Bools, Floats
 
-    Floats = NDArray[np.float64]
 
 #: Least factor on a density.
 LEAST = 0.1
@@ -31,7 +29,7 @@ HOLDS = 1e-9
 SMALL = 0.01
 
 
-def massless_nodes(system: NumberedModel, redistribute: bool) -> NDArray[np.bool_] | None:
+def massless_nodes(system: NumberedModel, redistribute: bool) -> Bools | None:
     """Nodes whose mass others carry: the slave nodes of contact.
 
     A contact force that acts on nodes without mass is bounded and does no work in the limit of
@@ -43,7 +41,7 @@ def massless_nodes(system: NumberedModel, redistribute: bool) -> NDArray[np.bool
     return massless if massless.any() else None
 
 
-def set_moving_mass(system: NumberedModel, kind: str, massless: NDArray[np.bool_] | None) -> str:
+def set_moving_mass(system: NumberedModel, kind: str, massless: Bools | None) -> str:
     """Set the massless nodes in the core, and the densities of the others.
 
     Parameters
@@ -95,7 +93,7 @@ def set_moving_mass(system: NumberedModel, kind: str, massless: NDArray[np.bool_
     )
 
 
-def _all_skin(system: NumberedModel, massless: NDArray[np.bool_]) -> str:
+def _all_skin(system: NumberedModel, massless: Bools) -> str:
     """A remark where elements consist of contact nodes alone: no other node can take their mass."""
     mesh = system.model.mesh
     count = sum(int(massless[cells.nodes].all(axis=1).sum()) for cells in mesh.cells)

@@ -16,14 +16,10 @@ from corota.model.loads import check_supports
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.load_factors import LoadFactors
+    from corota.arrays import Bools, Floats, Ints
     from corota.model.loads import Fixed
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 class Supports:
@@ -134,7 +130,7 @@ class Supports:
         self.constrained[dofs] = True
         self.history.set(dofs, np.where(keep, self.history.begin[dofs], value), index[number])
 
-    def hold(self, dofs: NDArray[np.bool_], u: Floats) -> None:
+    def hold(self, dofs: Bools, u: Floats) -> None:
         """Let dofs stay at a displacement, shape (n_dofs,)."""
         places = np.flatnonzero(dofs)
         self.constrained[places] = True
@@ -166,7 +162,7 @@ class Supports:
         self.history.amplitude[freed] = 0
         self._guide()
 
-    def _refuse_off_axis(self, item: Fixed, dofs: NDArray[np.int64]) -> None:
+    def _refuse_off_axis(self, item: Fixed, dofs: Ints) -> None:
         """Refuse to move what is guided along the axis of a ring."""
         if item.value == 0.0:
             return

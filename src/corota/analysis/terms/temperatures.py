@@ -12,13 +12,10 @@ from corota.arrays import distinct
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.load_factors import LoadFactors
+    from corota.arrays import Floats
     from corota.model.loads import Temperature
-
-    Floats = NDArray[np.float64]
 
 
 class Temperatures:

@@ -15,10 +15,9 @@ if TYPE_CHECKING:
 
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.numbered_model import NumberedModel, Role
+    from corota.arrays import Floats, Ints
     from corota.model.steps import Step
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: No nodes.
 NO_NODES = np.zeros(0, np.int64)

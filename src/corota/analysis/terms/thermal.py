@@ -28,17 +28,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import TypeGuard
 
-    from numpy.typing import NDArray
-
     import corota._core as _core
     from corota.analysis.parallel.communicator import Communicator
+    from corota.arrays import Floats, Ints
     from corota.errors import Location
     from corota.model.blocks import BlockOfCells
     from corota.model.materials import Material
     from corota.model.model import Model
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Local strain that belongs to the stretch ``1 + e`` of free thermal expansion.
 MEASURES: dict[str, Callable[[Floats], Floats]] = {

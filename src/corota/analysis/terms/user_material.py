@@ -15,12 +15,10 @@ from corota.model.user_material import UserMaterial
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
     import corota._core as _core
+    from corota.arrays import Floats
     from corota.model.blocks import BlockOfCells
 
-    Floats = NDArray[np.float64]
 
 #: Change of the strain, relative to the largest, below which the linear part is exact.
 SETTLED = 1e-9

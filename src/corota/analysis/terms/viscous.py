@@ -25,13 +25,9 @@ from corota.model import elements
 from corota.model.blocks import core_input
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
+    from corota.arrays import Bools, Floats, Ints
     from corota.model.blocks import BlockOfCells
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 @dataclass
@@ -54,7 +50,7 @@ class _Block:
     dofs: Ints
     arm: Floats
     matrix: Floats
-    chosen: NDArray[np.bool_]
+    chosen: Bools
     places: Ints
     turns: bool
 

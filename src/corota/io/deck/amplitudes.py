@@ -11,8 +11,8 @@ import numpy as np
 from corota.model.loads import Amplitude
 
 if TYPE_CHECKING:
+    from corota.arrays import Floats
     from corota.errors import Location
-    from corota.mesh.data import Floats
 
 #: Samples of a smooth step, and of the shortest period: straight lines miss a sine by 4e-6.
 PER_STEP, PER_PERIOD = 200, 1024

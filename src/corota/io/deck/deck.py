@@ -35,9 +35,9 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterable
 
+    from corota.arrays import Floats, Ints
     from corota.io.deck.amplitudes import Curve
     from corota.io.deck.lexer import Lexer
-    from corota.mesh.data import Floats, Ints
     from corota.model.loads import Amplitude
 
     #: Enters the data of cards into the model: a function of targets, which know decks, and data.

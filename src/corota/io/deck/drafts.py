@@ -12,7 +12,7 @@ from corota.io.deck.lexer import Card, Row, key
 from corota.model.friction import largest
 
 if TYPE_CHECKING:
-    from corota.mesh.data import Floats, Ints
+    from corota.arrays import Floats, Ints
     from corota.model.friction import Friction
     from corota.model.loads import LoadKind
     from corota.model.materials import Elastic, Expansion

@@ -38,8 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.io.frd.layout import Block
     from corota.mesh import Mesh
     from corota.model.model import Model
@@ -47,8 +46,6 @@ if TYPE_CHECKING:
     from corota.model.steps import Step
     from corota.results.results import Frame, Results
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 END = b" 9999\n"
 #: Types of analysis of modes; 0 is static and 1 dynamic.
@@ -328,7 +325,7 @@ class FrdWriter:
                 found.append((block, labels[slaves], table))
         return [entry for entry in found if len(entry[1])]
 
-    def _slaves(self, frame: Frame) -> NDArray[np.bool_]:
+    def _slaves(self, frame: Frame) -> Bools:
         """Nodes of slave surfaces; of models from files those that have a value."""
         mesh = self._model.mesh
         out = np.zeros(mesh.n_nodes, dtype=bool)

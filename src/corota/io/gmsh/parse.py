@@ -19,7 +19,8 @@ from corota.mesh.kinds import KINDS, N_NODES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.mesh.data import Floats, Ints
+    from corota.arrays import Floats, Ints
+
 
 #: Cell kinds by Gmsh's element number.
 NAMES = {kind.gmsh: name for name, kind in KINDS.items()}

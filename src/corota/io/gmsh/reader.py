@@ -19,7 +19,7 @@ from corota.mesh.plane import into_plane
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, classify
 
 if TYPE_CHECKING:
-    from corota.mesh.data import Floats, Ints
+    from corota.arrays import Floats, Ints
 
 #: Default names of physical groups, as Gmsh writes them into decks.
 _UNNAMED = {0: "PhysicalPoint", 1: "PhysicalLine", 2: "PhysicalSurface"}

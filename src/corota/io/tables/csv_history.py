@@ -23,13 +23,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Ints
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.frame import Frame
 
-    Ints = NDArray[np.int64]
 
 #: Scalars of a frame that always have a column.
 ALWAYS = ("iterations", "strain energy", "external work", "kinetic energy")

@@ -25,14 +25,10 @@ from corota.results.variables import invariant
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.model.steps import Output, Step
     from corota.results.results import Frame, PointFields
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 def node_titles() -> dict[str, tuple[str, str]]:

@@ -20,15 +20,12 @@ from corota.model.sections import thickness_at
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.model.contact import ContactPair
     from corota.model.model import Model
     from corota.model.steps import Output
     from corota.results.results import Frame
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Variables of contact that are printed.
 VARIABLES = ("CDIS", "CSTR", "CELS", "CNUM", "CF", "CFN", "CFS")

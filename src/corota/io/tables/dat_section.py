@@ -20,14 +20,11 @@ from corota.model.sections import thickness_at
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.model.steps import Output
     from corota.results.results import Frame
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Variables of sections that are printed, all in one block.
 VARIABLES = ("SOF", "SOM", "SOAREA")

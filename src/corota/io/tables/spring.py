@@ -15,11 +15,8 @@ from corota.results.stage_results import STILL
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from corota.results.stage_results import StageResults
 
-    Floats = NDArray[np.float64]
 
 #: Dofs of the components in decks, and their names.
 DOFS = {"x": 1, "y": 2, "rotation": 6}

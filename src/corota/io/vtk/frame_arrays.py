@@ -20,13 +20,9 @@ from corota.results.averaging import (
 from corota.results.table import CONTACT, INVARIANTS, TABLE, TENSORS
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.results.results import Frame
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 
 def six(tensor: Floats) -> Floats:

@@ -14,12 +14,11 @@ from corota.results.rigid import moved, rigid_curves, rigid_lines
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.results.results import Frame
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: VTK cell types of our kinds; node orders agree.
 VTK_TYPES = {name: kind.vtk for name, kind in KINDS.items()}

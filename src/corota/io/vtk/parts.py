@@ -16,9 +16,7 @@ import numpy as np
 from corota.arrays import distinct
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Ints = NDArray[np.int64]
+    from corota.arrays import Ints
 
 
 class Parts:

@@ -15,11 +15,10 @@ from corota.results.arrays import require
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
     from corota.model.model import Model
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Angle between two sections [degrees], at most.
 STEP = 5.0

@@ -40,13 +40,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.model.paths import Modes
     from corota.model.steps import Step
     from corota.results.results import Frame, PointFields
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 fletcher32 = lazy("corota.io.checksum:fletcher32")
 packed = lazy("corota.io.vtk.packing:packed")

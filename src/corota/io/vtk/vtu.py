@@ -23,11 +23,11 @@ from corota.results.averaging import Averaging, section_of_cells
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from corota.arrays import Ints
     from corota.model.model import Model
     from corota.model.paths import Modes
     from corota.results.results import Frame, Results
 
-    Ints = np.typing.NDArray[np.int64]
 
 _NAMES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
 

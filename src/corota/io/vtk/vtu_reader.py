@@ -28,9 +28,7 @@ _OWN = {row.stored for row in TABLE.values() if row.frame}
 _FORCES = {"RF": "reaction", "F": "external force"}
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats, Ints
 
 
 def read_vtk_xml(path: Path) -> Results:
@@ -65,11 +63,11 @@ def read_vtk_xml(path: Path) -> Results:
 class _Sectioned(Results):
     """Results whose model has no sections, but numbers of them."""
 
-    def __init__(self, model: Model, sections: NDArray[np.int64]) -> None:
+    def __init__(self, model: Model, sections: Ints) -> None:
         super().__init__(model)
         self._numbers = sections
 
-    def sections(self) -> NDArray[np.int64]:
+    def sections(self) -> Ints:
         return self._numbers
 
 

@@ -30,15 +30,11 @@ from corota.model.steps import Static
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from corota.analysis.increment_loop import IncrementLoop
     from corota.analysis.newton import ResidualNorms
     from corota.analysis.procedures.path.plan import Increment
     from corota.analysis.procedures.path.stability import Critical
     from corota.model.paths import Where
-
-    Floats = NDArray[np.float64]
 
 
 def path_step(loop: IncrementLoop, path: ArcLength | DisplacementControl) -> None:

@@ -28,11 +28,9 @@ from corota.analysis.procedures.path.tracer import LEFT, PathTracer
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.procedures.path.stability import Critical, Station
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Largest displacement by which a branch is entered, as a share of the structure's size ...
 MODE = 0.02

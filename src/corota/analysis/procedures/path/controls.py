@@ -15,16 +15,10 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-import numpy as np
-
 from corota.analysis.path_system import product
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
-    Mask = NDArray[np.bool_]
+    from corota.arrays import Bools, Floats, Ints
 
 
 class Control(Protocol):
@@ -60,7 +54,7 @@ class Arc:
     """
 
     radius: float
-    counted: Mask
+    counted: Bools
     weight: float = 0.0
 
     def change(self, du: Floats, dfactor: float, a: Floats, b: Floats) -> float | None:
@@ -128,7 +122,7 @@ class Plane:
     target_factor: float
     direction: Floats
     direction_factor: float
-    counted: Mask
+    counted: Bools
     weight: float
 
     def change(self, du: Floats, dfactor: float, a: Floats, b: Floats) -> float | None:

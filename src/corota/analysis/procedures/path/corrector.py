@@ -20,14 +20,10 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.path_system import PathSystem
     from corota.analysis.procedures.path.controls import Control
 
-    Floats = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
 
 #: Displacements below this share of the structure's size are rounding.
 STILL = 1e-12

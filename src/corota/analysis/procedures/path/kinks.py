@@ -17,11 +17,8 @@ from corota.analysis.path_system import Metric, Point, Tangent
 from corota.analysis.procedures.path.corrector import tangent_at
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.path_system import PathSystem
-
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
 
 
 #: Cosine from which two directions determine each other's orientation.

@@ -21,11 +21,9 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.path_system import PathSystem, Point, Tangent
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: A critical point is located to this share of the increment that holds it.
 CRITICAL_POINT_TOLERANCE = 1e-7

@@ -35,14 +35,12 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from numpy.typing import NDArray
-
     from corota.analysis.newton import ResidualNorms, Settings
     from corota.analysis.path_system import PathSystem
     from corota.analysis.procedures.path.controls import Control
     from corota.analysis.procedures.path.corrector import Corrected
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
     Report = Callable[[int, int, ResidualNorms, float, float, float], None]
 
 #: Iterations that an increment should take ...

@@ -12,7 +12,7 @@ from corota.mesh.parts import cells_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from corota.mesh.data import Floats
+    from corota.arrays import Floats
     from corota.model.model import Model
     from corota.model.sections import Section
 

@@ -21,14 +21,13 @@ from corota.model.steps import Buckle, Frequency, Visco
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.io.deck.build.mesh import View
     from corota.io.deck.build.sets import Sets
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import Draft, InteractionDraft, PairDraft, Surface, SurfaceRow
     from corota.io.deck.lexer import Card
-    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.mesh.data import Mesh
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]
@@ -37,9 +36,7 @@ if TYPE_CHECKING:
 AT_REST = (None, Visco, Buckle, Frequency)
 
 
-def build_contacts(
-    deck: Deck, model: Model, sets: Sets, find: Find, rotating: NDArray[np.bool_]
-) -> None:
+def build_contacts(deck: Deck, model: Model, sets: Sets, find: Find, rotating: Bools) -> None:
     """Add the deck's contact pairs and ties to the model; reference nodes get a rotation."""
     builder = _Builder(deck, model, sets, find, rotating)
     add_general(deck, model, sets)
@@ -52,9 +49,7 @@ def build_contacts(
 
 
 class _Builder:
-    def __init__(
-        self, deck: Deck, model: Model, sets: Sets, find: Find, rotating: NDArray[np.bool_]
-    ) -> None:
+    def __init__(self, deck: Deck, model: Model, sets: Sets, find: Find, rotating: Bools) -> None:
         self.deck, self.model, self.sets = deck, model, sets
         self.find, self.rotating = find, rotating
         self.curves: dict[str, RigidCurve] = {}

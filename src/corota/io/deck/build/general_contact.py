@@ -18,11 +18,11 @@ from corota.io.deck.drafts import InteractionDraft, PairDraft, StartDraft, Surfa
 from corota.io.deck.lexer import Row, key
 
 if TYPE_CHECKING:
+    from corota.arrays import Floats, Ints
     from corota.io.deck.build.sets import Sets
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import GeneralDraft
     from corota.io.deck.lexer import Card
-    from corota.mesh.data import Floats, Ints
     from corota.model.model import Model
 
 #: Names of the surface of all outer edges, and of contact that no card describes.

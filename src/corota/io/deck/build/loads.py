@@ -21,9 +21,9 @@ from corota.model.loads import BodyForce, EdgeLoad, Fixed, NodalForce
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from corota.arrays import Ints
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import Draft, StepDraft
-    from corota.mesh.data import Ints
     from corota.model.loads import Load, Temperature
 
 base_motion = lazy("corota.io.deck.build.base_motion:base_motion")

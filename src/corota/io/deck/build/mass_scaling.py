@@ -17,9 +17,10 @@ from corota.model.material_table import MaterialTable
 from corota.model.steps import Buckle, Static
 
 if TYPE_CHECKING:
+    from corota.arrays import Floats, Ints
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import MassScalingDraft
-    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.mesh.data import Mesh
     from corota.model.sections import Section
 
 

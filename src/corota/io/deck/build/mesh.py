@@ -18,11 +18,9 @@ from corota.mesh.kinds import KINDS
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, GOOD, classify
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import ElementBlock, Instance, NodeBlock, Scope
-    from corota.mesh.data import Floats, Ints
 
 #: Largest coordinate; areas and their products stay finite.
 LARGEST = 1e100
@@ -440,7 +438,7 @@ class MeshBuilder:
         block: ElementBlock,
         nodes: Ints,
         among: Ints | None = None,
-        twice: NDArray[np.bool_] | None = None,
+        twice: Bools | None = None,
     ) -> Ints:
         """Elements without a node that occurs twice; ``twice`` is known or found."""
         twice = _twice(nodes) if twice is None else twice
@@ -504,7 +502,7 @@ class MeshBuilder:
             self.deck.error(None, None, f"{count} {text}; the first {MAX_LISTED} are listed")
 
 
-def _twice(nodes: Ints) -> NDArray[np.bool_]:
+def _twice(nodes: Ints) -> Bools:
     """Where the sorted nodes of an element repeat, shape (n, k - 1)."""
     in_order = np.sort(nodes, axis=1)
     return np.asarray((np.diff(in_order, axis=1) == 0) & (in_order[:, 1:] >= 0))

@@ -17,8 +17,9 @@ from corota.mesh.shape_functions import shape_functions, shape_gradients
 from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
+    from corota.arrays import Floats, Ints
     from corota.io.deck.drafts import NonstructuralDraft
-    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.mesh.data import Mesh
     from corota.model.sections import Section
 
 #: Elements without a mass of their own.

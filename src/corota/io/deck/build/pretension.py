@@ -26,12 +26,11 @@ from corota.model.loads import Fixed, InitialTemperature, InitialVelocity, Tempe
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.io.deck.build.sets import Sets
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import Draft, PretensionDraft
-    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.mesh.data import Mesh
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]
@@ -151,7 +150,7 @@ class PretensionBuilder:
                 self.model.axes.append(LocalAxes(np.array([a]), angle, None, axes.where))
         return angles
 
-    def join(self, find: Find, rotating: NDArray[np.bool_]) -> None:
+    def join(self, find: Find, rotating: Bools) -> None:
         """Tie the faces of each cut to the node of its section."""
         angles = self._angles()
         for draft, near, far, normal in self.cuts:

@@ -36,9 +36,9 @@ from corota.model.sections import Section
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from corota.arrays import Floats, Ints
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import SectionDraft
-    from corota.mesh.data import Floats, Ints
     from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
     from corota.model.sections import Plane

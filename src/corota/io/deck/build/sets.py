@@ -20,11 +20,12 @@ from corota.mesh.kinds import EDGES
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from corota.arrays import Ints
     from corota.errors import Location
     from corota.io.deck.build.mesh import MeshBuilder, View
     from corota.io.deck.drafts import NamedSet, Surface, SurfaceRow
     from corota.io.deck.lexer import Card
-    from corota.mesh.data import Ints, Mesh
+    from corota.mesh.data import Mesh
 
 _FACE = r"([SE])(\d{1,9})\Z"
 _SIDES = "a planar model takes no load out of its plane; the edges of shells are faces 3 to 6"

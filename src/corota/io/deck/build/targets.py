@@ -17,9 +17,9 @@ from corota.model.model import Model
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from corota.arrays import Floats, Ints
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import Draft, TieDraft
-    from corota.mesh.data import Floats, Ints
 
 
 class Targets:

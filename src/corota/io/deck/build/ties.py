@@ -16,11 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from typing import Literal
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Floats, Ints
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import Draft, TieDraft
-    from corota.mesh.data import Floats, Ints
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]
@@ -34,7 +32,7 @@ def build_tie(
     find: Find,
     cells: FindCells,
     name: FindName,
-    rotating: NDArray[np.bool_],
+    rotating: Bools,
     tie: TieDraft,
 ) -> None:
     """Add one of the deck's constraints to the model; reference nodes get a rotation.
@@ -56,7 +54,7 @@ def _build(
     find: Find,
     cells: FindCells,
     name: FindName,
-    rotating: NDArray[np.bool_],
+    rotating: Bools,
     tie: TieDraft,
 ) -> None:
     if tie.kind == "axes":
@@ -144,9 +142,7 @@ def _equations(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
         model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
-def _weighted(
-    deck: Deck, model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft
-) -> None:
+def _weighted(deck: Deck, model: Model, find: Find, rotating: Bools, tie: TieDraft) -> None:
     """Distributing coupling of listed nodes; its element names the reference node."""
     draft = deck.couplers.get(key(tie.elset))
     if draft is None:
@@ -210,9 +206,7 @@ def _straight(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
     model.constraints.append(StraightLine(nodes[2:], *ends, tie.where))
 
 
-def _between(
-    deck: Deck, model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft
-) -> None:
+def _between(deck: Deck, model: Model, find: Find, rotating: Bools, tie: TieDraft) -> None:
     """Dofs of a node by linear interpolation between two others, from its place between them."""
     found = [single_node(deck, find, term, model) for term in tie.terms]
     if None in found:
@@ -232,7 +226,7 @@ def _between(
         model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
-def _same(model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft) -> None:
+def _same(model: Model, find: Find, rotating: Bools, tie: TieDraft) -> None:
     """Equal displacements, and rotations where both have one, of pairs of nodes."""
     assert tie.target is not None
     pairs = []

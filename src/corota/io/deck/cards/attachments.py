@@ -20,12 +20,10 @@ from corota.model.contact import gap_element
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Ints
     from corota.errors import Location
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card, Row
-    from corota.mesh.data import Ints
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]
@@ -216,7 +214,7 @@ def _assign(deck: Deck, card: Card, type_: str, value: tuple[float, ...]) -> lis
     return mine
 
 
-def build_attachments(deck: Deck, model: Model, find: Find, rotating: NDArray[np.bool_]) -> None:
+def build_attachments(deck: Deck, model: Model, find: Find, rotating: Bools) -> None:
     """Add the deck's point masses, dashpots, connectors and gaps to the model."""
     for read in deck.properties:
         read()

@@ -36,12 +36,10 @@ from corota.model.loads import Fixed
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from corota.arrays import Bools, Ints
     from corota.errors import Location
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card
-    from corota.mesh.data import Ints
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]
@@ -424,9 +422,7 @@ def _pins(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> None:
         nodes.append(pin)
 
 
-def connect(
-    deck: Deck, model: Model, draft: AttachedDraft, find: Find, rotating: NDArray[np.bool_]
-) -> None:
+def connect(deck: Deck, model: Model, draft: AttachedDraft, find: Find, rotating: Bools) -> None:
     """Add constraints and dashpots of the connectors of a set to the model."""
     section = draft.connector
     if section is None:
@@ -466,7 +462,7 @@ class _Connector:
         section: ConnectorDraft,
         where: Location,
         nodes: list[int],
-        rotating: NDArray[np.bool_],
+        rotating: Bools,
     ) -> None:
         self.deck, self.model, self.section, self.where = deck, model, section, where
         self.nodes, self.rotating = nodes, rotating

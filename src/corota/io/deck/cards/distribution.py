@@ -15,11 +15,11 @@ from corota.io.deck.lexer import key
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from corota.arrays import Floats, Ints
     from corota.io.deck.build.mesh import View
     from corota.io.deck.build.sets import Sets
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card, Row
-    from corota.mesh.data import Floats, Ints
 
     Read = Callable[[Deck, Card, Row, int], float | None]
 

@@ -16,10 +16,11 @@ from corota.mesh.shape_functions import shape_functions, shape_gradients
 from corota.model.constraints import Equation
 
 if TYPE_CHECKING:
+    from corota.arrays import Floats, Ints
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card
-    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.mesh.data import Mesh
 
 #: Share of the size of its host by which a node may lie outside.
 OUTSIDE = 0.05

@@ -15,11 +15,11 @@ from corota.io.deck.lexer import Row
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from corota.arrays import Ints
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card
     from corota.mesh import Mesh
-    from corota.mesh.data import Ints
     from corota.results.frame import Frame
 
 #: Endings of result files, in the order in which they are tried.

@@ -20,12 +20,12 @@ from corota.model.sections import Section
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from corota.arrays import Ints
     from corota.io.deck.build.mesh import MeshBuilder
     from corota.io.deck.build.sets import Sets
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import SectionDraft
     from corota.io.deck.lexer import Card
-    from corota.mesh.data import Ints
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.profiles import Profile

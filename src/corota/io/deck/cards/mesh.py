@@ -28,7 +28,8 @@ from corota.mesh.kinds import N_NODES
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from corota.mesh.data import Ints
+    from corota.arrays import Ints
+
 
 # Functions of cards that few decks have.
 attached_elements = lazy("corota.io.deck.cards.attachments:elements")

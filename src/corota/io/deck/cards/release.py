@@ -14,10 +14,10 @@ from corota.io.deck.elements import LINE_ELEMENTS
 from corota.io.deck.lexer import key
 
 if TYPE_CHECKING:
+    from corota.arrays import Floats, Ints
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import ElementBlock, Scope
     from corota.io.deck.lexer import Card
-    from corota.mesh.data import Floats, Ints
 
 #: Ends of an element.
 ENDS = {"S1": 0, "S2": -1}

@@ -15,10 +15,10 @@ from corota.model.materials import Expansion
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from corota.arrays import Ints
     from corota.io.deck.build.sets import Elements
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card, Row
-    from corota.mesh.data import Ints
     from corota.model.model import Model
 
 #: Coefficients by ``TYPE=``.

@@ -17,8 +17,8 @@ from corota.model.friction import DecayingFriction, FrictionTable
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from corota.arrays import Floats, Ints
     from corota.io.deck.write.text import Writer
-    from corota.mesh.data import Floats, Ints
     from corota.model.contact import ContactPair, PressureLaw
     from corota.model.friction import Friction
     from corota.model.model import Model

@@ -14,11 +14,9 @@ from corota.model.materials import Elastic
 from corota.profiles import RECTANGLE, rectangle
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from corota.arrays import Floats
     from corota.model.sections import Section
 
-    Floats = NDArray[np.float64]
 
 #: Element types of decks by our names.
 LINE_TYPES = {

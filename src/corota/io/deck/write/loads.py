@@ -19,8 +19,8 @@ from corota.model.sections import thickness_at
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from corota.arrays import Ints
     from corota.mesh import Mesh
-    from corota.mesh.data import Ints
     from corota.model.loads import AppliedLoad, Fixed
 
 #: Abscissas and weights of Gauss's rule of three points over a curved edge.

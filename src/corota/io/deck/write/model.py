@@ -45,7 +45,8 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Iterator, Sequence
 
-    from corota.mesh.data import Ints, Mesh
+    from corota.arrays import Ints
+    from corota.mesh.data import Mesh
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.sections import Section

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from corota.mesh.data import Ints, Mesh
+    from corota.arrays import Ints
+    from corota.mesh.data import Mesh
     from corota.model.model import Model
 
 #: Entries on a line of a set.

@@ -13,13 +13,12 @@ from corota.model.materials import Expansion
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from corota.arrays import Ints
     from corota.io.deck.write.text import Writer
     from corota.model.materials import Material
     from corota.model.model import Model
-
-    Ints = NDArray[np.int64]
 
 
 def expansion_cards(material: Material) -> str:
