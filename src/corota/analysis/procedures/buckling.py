@@ -20,6 +20,7 @@ import numpy as np
 from corota.analysis.evaluation import Evaluation
 from corota.analysis.linear.lanczos import BLOCK, largest
 from corota.analysis.procedures.buckling_contact import factors_with_contact
+from corota.analysis.procedures.buckling_free import FreeMotions
 from corota.analysis.terms.conditions import Conditions
 from corota.errors import ConvergenceError, ModelError, UnsupportedError
 from corota.model.paths import Modes
@@ -72,13 +73,16 @@ def buckle_step(
     system.set_kinematics(True, about_linear=system.about_linear and step.preload)
     base = state.u
     dead: list[str] | None = [] if step.dead_loads else None
+    notes: list[str] = []
+    supported = system.conditions.constrained.copy()
     if not step.preload:
         _check_unloaded(system, step)
         base = np.zeros_like(state.u)
     try:
-        factors, shapes = _solve(system, step, number, base, dead)
+        factors, shapes = _solve(system, step, number, base, dead, notes)
     finally:
         # A perturbation leaves nothing behind.
+        system.conditions.constrained[:] = supported
         system.conditions.end_time = 0.0
         system.set_kinematics(*kinematics)
         state.at = system.evaluate(state.u, 0.0)
@@ -86,7 +90,7 @@ def buckle_step(
     state.modes.append(Modes("buckling", number, factors, by_node.reshape(len(factors), -1, 3)))
     scalars = {f"buckling factor {k}": float(f) for k, f in enumerate(factors, start=1)}
     listed = ", ".join(f"{f:.6g}" for f in factors)
-    state.notes += [f"buckling step {number}: {note}" for note in dead or []]
+    state.notes += [f"buckling step {number}: {note}" for note in (dead or []) + notes]
     state.notes.append(f"buckling factors of step {number}: {listed}")
     save(state, 1, 0.0, scalars)
 
@@ -104,7 +108,12 @@ def _check_unloaded(system: System, step: Buckle) -> None:
 
 
 def _solve(
-    system: System, step: Buckle, number: int, u: Floats, dead: list[str] | None
+    system: System,
+    step: Buckle,
+    number: int,
+    u: Floats,
+    dead: list[str] | None,
+    notes: list[str],
 ) -> tuple[Floats, Floats]:
     force, move, loads = _perturbation(system, step, number, u)
     if system.n_multipliers:
@@ -113,14 +122,18 @@ def _solve(
         return factors, _largest_one(system, shapes)
     base = _symmetric(system, system.evaluate(u, 0.0), dead)
     values = _unknowns(system, base, base.residual)
-    response, negative = system.correct(replace(base, values=base.values.copy()), force, move)
-    if negative > 0:
+    motions = FreeMotions(system, base, values, force, move)
+    response = motions.response
+    if motions.negative > 0:
         raise ModelError(
-            f"the state before buckling step {number} is unstable ({negative} negative pivots): "
-            "linear buckling needs a stable one; follow its path instead (path=ArcLength(...))",
+            f"the state before buckling step {number} is unstable ({motions.negative} negative "
+            "pivots): linear buckling needs a stable one; follow its path instead "
+            "(path=ArcLength(...))",
             step.where,
         )
     change = _derivative(system, u, values, response, loads, dead)
+    if len(motions):
+        notes.append(motions.load(change, step, number))
     largest_move = _moved(system, response, loads)
     constrained, free = system.conditions.constrained, system.constraints.free
     pattern = system.constraints.pattern
@@ -129,15 +142,16 @@ def _solve(
         out = np.zeros(x.shape, order="F")
         for k in range(x.shape[1]):
             out[free, k] = -pattern.multiply(change, np.ascontiguousarray(x[free, k]))
+        out += motions.force(x)
         out[constrained] = 0.0
         return out
 
     def count(bound: float) -> int:
         """Negative pivots of the tangent at a factor: the modes in front of it."""
         at = values + bound * change
-        pattern.mask(at, constrained[free])
+        pattern.mask(at, motions.held[free])
         inertia = system.linear.factorize(pattern, at)
-        return -1 if inertia is None else inertia[1]
+        return -1 if inertia is None else inertia[1] - motions.driven
 
     start = np.random.default_rng(11).standard_normal((system.n_dofs, BLOCK))
     start[constrained] = 0.0
@@ -154,7 +168,7 @@ def _solve(
                 "tension only?",
                 step.where,
             )
-        factors = 1.0 / theta
+        factors, shapes = 1.0 / theta, motions.shapes(shapes)
         if len(theta) < wanted or wanted > step.modes:
             break
         bound = float(factors[-1]) * (1.0 + BEHIND)
