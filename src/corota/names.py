@@ -5,12 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from corota.errors import InputError
+from corota.errors import InputError, Location
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from corota.errors import Location
 
 #: Largest number of names in a message.
 MOST_LISTED = 20

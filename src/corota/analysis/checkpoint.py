@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from corota.analysis.state_tree import Reader, Writer, digest_of
+from corota.analysis.state_tree import Reader, Tree, Writer, digest_of
 from corota.errors import UnsupportedError
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.state import State
-    from corota.analysis.state_tree import Tree
     from corota.analysis.terms.moving_mass import MovingMass
     from corota.model.model import Model
     from corota.model.steps import Step

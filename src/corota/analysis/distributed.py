@@ -21,12 +21,13 @@ import corota._core as _core
 from corota.analysis.distributed_forces import (
     STATIC_MASS,
     BodyLoad,
+    Distribution,
     Pressure,
     Traction,
     hydrostatic_thickness,
 )
 from corota.arrays import distinct
-from corota.errors import InputError, ModelError
+from corota.errors import InputError, Location, ModelError
 from corota.mesh.kinds import EDGES
 from corota.model import axisymmetry, elements
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce
@@ -34,13 +35,11 @@ from corota.model.loads import BodyForce, EdgeLoad, NodalForce
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from corota.analysis.distributed_forces import Distribution
     from corota.analysis.electrostatics import ElectrostaticPressure
     from corota.analysis.following_forces import FollowingTraction
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.penetration import PenetratingPressure
     from corota.arrays import Bools, Floats, Ints
-    from corota.errors import Location
 
     Item = EdgeLoad | BodyForce | NodalForce
 

@@ -9,13 +9,12 @@ import numpy as np
 
 from corota.analysis.failure import ElementFailure
 from corota.analysis.following_forces import edge_shapes
-from corota.errors import ModelError
+from corota.errors import Location, ModelError
 
 if TYPE_CHECKING:
     from corota.analysis.distributed_forces import LoadSum
     from corota.analysis.numbered_model import NumberedModel
     from corota.arrays import Floats, Ints
-    from corota.errors import Location
 
 
 #: Gauss points and weights of an edge: 1 / gap is no polynomial.

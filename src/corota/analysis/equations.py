@@ -22,7 +22,7 @@ from corota.analysis.scales import Scales
 from corota.analysis.terms.conditions import Conditions
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.elements import Elements
-from corota.analysis.terms.term import TERMS, StatePoint
+from corota.analysis.terms.term import TERMS, StatePoint, Term
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.linear.types import Sparse
-    from corota.analysis.terms.term import Term
     from corota.arrays import Bools, Floats, Ints
     from corota.model.model import Model
     from corota.model.steps import Step

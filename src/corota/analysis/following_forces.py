@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.distributed_forces import Pressure
+from corota.analysis.distributed_forces import LoadSum, Pressure
 
 if TYPE_CHECKING:
     import corota._core as _core
-    from corota.analysis.distributed_forces import LoadSum
     from corota.analysis.numbered_model import NumberedModel
     from corota.arrays import Bools, Floats, Ints
 

@@ -13,10 +13,10 @@ import numpy as np
 import corota._core as _core
 from corota.analysis.constraints.none import constraints_of
 from corota.analysis.linear.matrix import AssembledPattern
-from corota.analysis.linear.solvers import Multifrontal
+from corota.analysis.linear.solvers import LinearSolver, Multifrontal
 from corota.analysis.linear.system import LinearSystem
 from corota.analysis.memory import require_model
-from corota.analysis.parallel.communicator import ALONE
+from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.analysis.parallel.partition import own_blocks
 from corota.analysis.terms.moving_mass import MovingMass
 from corota.analysis.terms.thermal import FreeStrains, start_temperatures
@@ -27,8 +27,6 @@ from corota.model.blocks import blocks_of, check_shapes, core_input
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from corota.analysis.linear.solvers import LinearSolver
-    from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.timer import Timer
     from corota.arrays import Bools, Floats, Ints
     from corota.model.model import Model

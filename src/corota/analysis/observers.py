@@ -5,14 +5,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from corota.analysis.parallel.communicator import ALONE
+from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from corota.analysis.checkpoint import Checkpoint
-    from corota.analysis.parallel.communicator import Communicator
     from corota.model.model import Model
     from corota.model.steps import Output, Step
     from corota.results.observer import Iteration, Observer

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 import corota._core as _core
-from corota.analysis.distributed_forces import evaluate
-from corota.errors import ModelError
+from corota.analysis.distributed_forces import LoadSum, evaluate
+from corota.errors import Location, ModelError
 
 if TYPE_CHECKING:
-    from corota.analysis.distributed_forces import LoadSum
     from corota.analysis.numbered_model import NumberedModel
     from corota.arrays import Bools, Floats, Ints
-    from corota.errors import Location
 
 
 #: Relative difference of pressures that is rounding.

@@ -11,22 +11,22 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from corota.analysis.checkpoint import Begun, Resumption, replay, take
+from corota.analysis.checkpoint import Begun, Checkpoint, Resumption, replay, take
 from corota.analysis.constraints.none import IDENTITY
 from corota.analysis.end_moments import add_end_moments
 from corota.analysis.energies import Energies
 from corota.analysis.equations import System
 from corota.analysis.failure import ElementFailure
-from corota.analysis.linear.solvers import make_solver
+from corota.analysis.linear.solvers import LinearSolver, make_solver
 from corota.analysis.memory import require_libraries
 from corota.analysis.missed_peaks import missed_peaks, pair_forces
 from corota.analysis.observers import Observers
-from corota.analysis.parallel.communicator import ALONE
+from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.analysis.procedures.localization import localized
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
-from corota.analysis.terms.moving_mass import masses_of_steps
+from corota.analysis.terms.moving_mass import MovingMass, masses_of_steps
 from corota.display import brief
 from corota.errors import (
     SHORT,
@@ -38,19 +38,14 @@ from corota.errors import (
     memory_errors,
 )
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
-from corota.model.steps import in_force
+from corota.model.steps import Step, in_force
 from corota.results.results import Frame, Results
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from corota.analysis.checkpoint import Checkpoint
-    from corota.analysis.linear.solvers import LinearSolver
-    from corota.analysis.parallel.communicator import Communicator
-    from corota.analysis.terms.moving_mass import MovingMass
     from corota.arrays import Floats
     from corota.model.model import Model
-    from corota.model.steps import Step
     from corota.results.observer import Observer
     from corota.results.results import PointFields
 

@@ -11,7 +11,7 @@ from corota.analysis.linear.factor import Factor
 from corota.analysis.terms.linearized import Linearized
 from corota.arrays import distinct
 from corota.errors import InputError, ModelError, SingularError
-from corota.model.stages import FATIGUE
+from corota.model.stages import FATIGUE, Stage
 from corota.results.averaging import Averaging, section_of_cells
 from corota.results.body_motion import BodyMotion, fit_rigid_motion
 from corota.results.extremes import WIDTH, row_of
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.arrays import Floats, Ints
     from corota.model.model import Model
-    from corota.model.stages import Stage
     from corota.results.frame import Frame
 
 

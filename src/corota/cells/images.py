@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.model.contact import RigidCurve, edges_or_nodes
+from corota.model.contact import ContactPair, RigidCurve, edges_or_nodes
 
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
-    from corota.model.contact import ContactPair
     from corota.model.model import Model
 
     #: Nodes by their class and the multiples of the vectors from its first node.

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from corota.analysis.terms.linearized import Linearized
-from corota.cells.states import point_of, settle, state_at
+from corota.cells.states import Cell, State, point_of, settle, state_at
 from corota.cells.waves import UNIFORM, Waves
 from corota.display import Brief
 from corota.errors import ConvergenceError, InputError, UnsupportedError
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from corota.arrays import Complex, Floats
-    from corota.cells.states import Cell, State
     from corota.results.results import Results
 
 

@@ -14,14 +14,12 @@ from corota.analysis.equations import System
 from corota.analysis.linear.solvers import make_solver
 from corota.analysis.terms.linearized import Linearized
 from corota.errors import ConvergenceError, InputError, UnsupportedError
-from corota.gradients.trajectory import Trajectory, increments_of
-from corota.model.steps import Static
+from corota.gradients.trajectory import Increment, Trajectory, increments_of
+from corota.model.steps import Static, Step
 
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
-    from corota.gradients.trajectory import Increment
     from corota.model.model import Model
-    from corota.model.steps import Step
     from corota.results.results import Results
 
 

@@ -10,11 +10,10 @@ import numpy as np
 from corota.errors import Diagnostic
 from corota.mesh.parts import cells_of
 from corota.model.joints import constrained_nodes
-from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, applied
+from corota.model.loads import AppliedLoad, BodyForce, EdgeLoad, NodalForce, Temperature, applied
 from corota.model.rotations import reference_nodes, rotating_nodes, without_rotation
 
 if TYPE_CHECKING:
-    from corota.model.loads import AppliedLoad
     from corota.model.model import Model
 
 

@@ -7,12 +7,11 @@ import warnings
 from typing import TYPE_CHECKING
 
 from corota.errors import ConvergenceError, CorotaError
-from corota.results.observer import BaseObserver
+from corota.results.observer import BaseObserver, Iteration
 
 if TYPE_CHECKING:
     from corota.model.model import Model
     from corota.model.steps import Step
-    from corota.results.observer import Iteration
     from corota.results.results import Frame
 
 

@@ -7,13 +7,12 @@ import time
 from typing import TYPE_CHECKING
 
 from corota.cli.parser import terminal_columns
-from corota.results.observer import BaseObserver
+from corota.results.observer import BaseObserver, Iteration
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
     from corota.model.model import Model
     from corota.model.steps import Step
-    from corota.results.observer import Iteration
     from corota.results.results import Frame, Results
 
 HEAD = " step    inc  att  iter          time   load factor   residual"

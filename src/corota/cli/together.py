@@ -7,13 +7,12 @@ import contextlib
 import os
 from typing import TYPE_CHECKING, Any
 
-from corota.analysis.parallel.communicator import ALONE
+from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.errors import UnsupportedError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from corota.analysis.parallel.communicator import Communicator
     from corota.cli.terminal import Terminal
 
 #: Variables by which starters of MPI programs tell how many processes they started, and which

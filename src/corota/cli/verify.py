@@ -7,13 +7,12 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from corota.cli.progress import duration
-from corota.verification.catalogue import GROUPS, chosen
+from corota.verification.catalogue import GROUPS, Problem, Value, chosen
 from corota.verification.outcome import Outcome
 from corota.verification.runner import run as run_problems
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
-    from corota.verification.catalogue import Problem, Value
 
 HEAD = ("problem", "quantity", "reference", "measured", "error", "tolerance", "status", "s")
 

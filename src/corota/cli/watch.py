@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from corota.cli.progress import duration
 from corota.errors import FileError
-from corota.report.records import ITERATION, find_job
+from corota.report.records import ITERATION, JobPaths, Records, find_job
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
-    from corota.report.records import JobPaths, Records
     from corota.report.server import JobWatch
 
 #: Seconds between two checks of the files, and seconds that a job may take to write its first.

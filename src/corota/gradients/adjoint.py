@@ -25,7 +25,7 @@ import numpy as np
 from corota.errors import UnsupportedError
 from corota.gradients import friction
 from corota.gradients.differences import derivative
-from corota.gradients.measures import SpecialMeasure
+from corota.gradients.measures import Measure, SpecialMeasure
 from corota.gradients.motion import Rates
 from corota.gradients.surfaces import evaluate, slide
 from corota.gradients.surfaces import solve as solve_with_surfaces
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.arrays import Floats
-    from corota.gradients.measures import Measure
     from corota.gradients.trajectory import Increment, Point, Trajectory
     from corota.model.steps import Step
 

@@ -18,14 +18,13 @@ from scipy.sparse.linalg import splu
 
 from corota.errors import UnsupportedError
 from corota.gradients.differences import all_derivatives
-from corota.gradients.surfaces import contact_of, evaluate, residuals
+from corota.gradients.surfaces import Surfaces, contact_of, evaluate, residuals
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.analysis.equations import System
     from corota.arrays import Floats, Ints
-    from corota.gradients.surfaces import Surfaces
 
 
 #: Step of a position over the size of a cell.

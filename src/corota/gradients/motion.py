@@ -22,7 +22,7 @@ from corota.analysis.terms.inertia import Inertia
 from corota.analysis.terms.viscous import ViscousElements
 from corota.errors import UnsupportedError
 from corota.model.schemes import SCHEMES
-from corota.model.steps import Dynamic
+from corota.model.steps import Dynamic, Step
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.arrays import Floats
     from corota.model.model import Model
-    from corota.model.steps import Step
 
 
 def refuse_motion(model: Model, steps: Sequence[Step]) -> None:

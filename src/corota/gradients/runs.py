@@ -11,16 +11,16 @@ import numpy as np
 
 from corota.analysis.run import keep_nlgeom, solve
 from corota.errors import InputError, UnsupportedError
-from corota.gradients.adjoint import FieldSums, adjoints, control_row
+from corota.gradients.adjoint import Adjoint, FieldSums, adjoints, control_row
 from corota.gradients.differences import derivative, step_between_kinks
 from corota.gradients.measures import Measure, SpecialMeasure, combine, leaves
 from corota.gradients.parameters import Field, Parameter
 from corota.gradients.sides import one_sided as limit
 from corota.gradients.sides import require_side
 from corota.gradients.store import HistoryStore
-from corota.gradients.trajectory import Trajectory, increments_of
+from corota.gradients.trajectory import Increment, Point, Trajectory, increments_of
 from corota.model.paths import DisplacementControl
-from corota.model.steps import Static, listed_steps
+from corota.model.steps import Static, Step, listed_steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,11 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from corota.arrays import Floats
-    from corota.gradients.adjoint import Adjoint
     from corota.gradients.sides import Side
-    from corota.gradients.trajectory import Increment, Point
     from corota.model.model import Model
-    from corota.model.steps import Step
     from corota.results.results import Results
 
 

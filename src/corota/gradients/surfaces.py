@@ -17,7 +17,7 @@ from scipy.sparse.linalg import lsqr
 
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import ContactEquations
-from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SLIPPING, covered
+from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SLIPPING, ContactState, covered
 from corota.analysis.terms.contact.problem import RightHandSides
 from corota.errors import UnsupportedError
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.terms.contact.gaps import ContactState
     from corota.arrays import Bools, Floats
     from corota.model.model import Model
 

@@ -20,7 +20,7 @@ from corota.errors import InputError, UnsupportedError
 from corota.gradients.motion import Motion, refuse_motion
 from corota.gradients.store import HistoryStore
 from corota.gradients.surfaces import Surfaces, add_forces, find, refuse_surfaces, slide
-from corota.model.steps import Dynamic
+from corota.model.steps import Dynamic, Step
 from corota.model.user_material import UserMaterial
 
 if TYPE_CHECKING:
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.arrays import Floats
     from corota.model.model import Model
-    from corota.model.steps import Step
     from corota.results.results import Frame, Results
 
 

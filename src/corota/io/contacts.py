@@ -11,10 +11,9 @@ import numpy as np
 
 from corota.io.datasets import store
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, edges_or_nodes
-from corota.model.friction import DecayingFriction, FrictionTable
+from corota.model.friction import DecayingFriction, Friction, FrictionTable
 
 if TYPE_CHECKING:
-    from corota.model.friction import Friction
     from corota.model.model import Model
 
 

@@ -8,14 +8,13 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
-from corota.results.observer import BaseObserver
+from corota.results.observer import BaseObserver, Iteration
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.model.model import Model
     from corota.model.steps import Step
-    from corota.results.observer import Iteration
     from corota.results.results import Frame, Results
 
 

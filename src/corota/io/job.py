@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from corota.analysis.checkpoint import model_tree
+from corota.analysis.checkpoint import Checkpoint, model_tree
 from corota.analysis.state_tree import Reader, Unstorable, Writer
 from corota.errors import FileError, InputError
 from corota.io.atomic_file import TextFile, full
@@ -24,22 +24,19 @@ from corota.io.stop_request import StopRequest, stop_file
 from corota.io.tables.csv_history import CsvWriter, Histories
 from corota.io.tables.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
 from corota.io.task_queue import TaskQueue
-from corota.io.writers import STREAMS, Job
+from corota.io.writers import STREAMS, Job, Stream
 from corota.lazy import lazy
 from corota.names import choose
-from corota.results.observer import BaseObserver
+from corota.results.observer import BaseObserver, Iteration
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from os import PathLike
     from types import TracebackType
 
-    from corota.analysis.checkpoint import Checkpoint
     from corota.io.checkpoint import Saved
-    from corota.io.writers import Stream
     from corota.model.model import Model
     from corota.model.steps import Output, Step
-    from corota.results.observer import Iteration
     from corota.results.results import Frame, Results
 
 # Tables and checkpoints that small jobs do not write.

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.model.steps import in_force
+from corota.model.steps import Output, Step, in_force
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from corota.model.model import Model
-    from corota.model.steps import Output, Step
     from corota.results.results import Frame
 
 #: Two times closer than this share of the step's period are the same.

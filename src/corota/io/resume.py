@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from corota.analysis.run import solve
 from corota.analysis.state_tree import UnsuitableState
 from corota.errors import FileError, InputError
-from corota.io.checkpoint import newest, rebuilt
+from corota.io.checkpoint import Saved, newest, rebuilt
 from corota.io.job import JobFiles
 from corota.model.steps import Step
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from corota.analysis.linear.solvers import LinearSolver
-    from corota.io.checkpoint import Saved
     from corota.model.model import Model
     from corota.results.observer import Observer
     from corota.results.results import Results

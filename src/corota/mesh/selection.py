@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.errors import InputError
+from corota.errors import InputError, Location
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from corota.arrays import Ints
-    from corota.errors import Location
 
 
 def indices(

@@ -12,7 +12,7 @@ import numpy as np
 import corota._core as _core
 from corota.display import Brief
 from corota.errors import InputError, Location
-from corota.model.friction import MOST_FRICTION, coefficients, described, largest
+from corota.model.friction import MOST_FRICTION, Friction, coefficients, described, largest
 from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from corota.arrays import Floats, Ints
     from corota.mesh.data import Mesh
-    from corota.model.friction import Friction
 
     Reference = int | str | tuple[float, float] | None
 

@@ -12,7 +12,7 @@ from corota.arrays import distinct
 from corota.model import elements
 from corota.model.constraints import Coupling
 from corota.model.contact import RigidCurve
-from corota.model.loads import BodyForce, EdgeLoad, NodalForce, applied
+from corota.model.loads import BodyForce, EdgeLoad, Fixed, Load, NodalForce, applied
 from corota.model.material_table import MaterialTable
 from corota.model.plasticity import Mises, Voce
 from corota.model.summary import joint_lines
@@ -20,7 +20,6 @@ from corota.model.summary import joint_lines
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from corota.model.loads import Fixed, Load
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.sections import Section

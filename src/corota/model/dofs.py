@@ -3,13 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from corota.errors import InputError
+from corota.errors import InputError, Location
 from corota.names import did_you_mean
-
-if TYPE_CHECKING:
-    from corota.errors import Location
 
 #: Degrees of freedom of a node by name; decks number them 1, 2 and 6.
 DOFS = {"x": 0, "y": 1, "rotation": 2}

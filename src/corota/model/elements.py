@@ -5,14 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING
 
 import corota._core as _core
-from corota.errors import InputError
+from corota.errors import InputError, Location
 from corota.names import choose
-
-if TYPE_CHECKING:
-    from corota.errors import Location
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from corota.errors import InputError, number
 from corota.mesh import selection
-from corota.model.loads import BodyForce, EdgeLoad, Fixed, Force, Temperature, selected
+from corota.model.loads import BodyForce, EdgeLoad, Fixed, Force, Load, Temperature, selected
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from corota.arrays import Floats, Ints
-    from corota.model.loads import Load
 
 
 #: Default of directions: fixed, and distinct from a 0 that is given.

@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from corota.errors import InputError
-
-if TYPE_CHECKING:
-    from corota.errors import Location
+from corota.errors import InputError, Location
 
 LocalStrain = Literal["linear", "logarithmic", "green_lagrange", "simplified", "modified"]
 

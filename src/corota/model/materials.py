@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 
 from corota.display import Brief
-from corota.errors import InputError
+from corota.errors import InputError, Location
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from corota.arrays import Floats
-    from corota.errors import Location
     from corota.model.local_strain import LocalStrain
 
 

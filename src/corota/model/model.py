@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 import numpy as np
 
 from corota.display import CELLS_DRAWN, LONGEST, brief, picture, table
-from corota.errors import InputError, number
+from corota.errors import Diagnostic, InputError, number
 from corota.lazy import lazy
 from corota.mesh import EDGES, selection
 from corota.model.attachments import Dashpot, PointMass
@@ -21,9 +21,7 @@ from corota.model.dofs import dof_index, dof_indices
 from corota.model.initial import InitialFields
 from corota.model.line_sections import LineSections
 from corota.model.loading import Loading
-from corota.model.loads import (
-    Amplitude as Amplitude,
-)
+from corota.model.loads import Amplitude as Amplitude
 from corota.model.loads import (
     BodyForce as BodyForce,
 )
@@ -33,6 +31,7 @@ from corota.model.loads import (
 from corota.model.loads import (
     Fixed as Fixed,
 )
+from corota.model.loads import Force
 from corota.model.loads import (
     InitialStress as InitialStress,
 )
@@ -51,6 +50,7 @@ from corota.model.loads import (
 from corota.model.loads import (
     Temperature as Temperature,
 )
+from corota.model.sections import Plane
 from corota.model.sections import Section as Section
 from corota.model.stages import Stage, Stages
 from corota.model.units import Units
@@ -62,14 +62,11 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from corota.arrays import Floats, Ints
-    from corota.errors import Diagnostic
     from corota.mesh import Mesh
     from corota.model.friction import Friction
-    from corota.model.loads import Force
     from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
     from corota.model.paths import Modes
-    from corota.model.sections import Plane
     from corota.model.steps import Step
 
     Where = str | ArrayLike

@@ -8,17 +8,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from corota.display import Brief
-from corota.errors import InputError
+from corota.errors import InputError, Location
 from corota.model.materials import _positive, isotropic_compliance
-from corota.model.rates import Norton, RateCurves
+from corota.model.rates import Norton, Rate, RateCurves
 from corota.model.single_point import LawOfTheCore
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from corota.arrays import Floats
-    from corota.errors import Location
-    from corota.model.rates import Rate
 
 
 #: Largest number of back-stresses of a material.

@@ -13,7 +13,7 @@ from corota.display import Brief
 from corota.errors import InputError, Location, number
 from corota.mesh.parts import cells_of
 from corota.model import elements
-from corota.model.local_strain import local_strain
+from corota.model.local_strain import LocalStrain, local_strain
 from corota.model.materials import Material
 from corota.names import choose
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
-    from corota.model.local_strain import LocalStrain
 
 
 #: State of the plane: no stress through the thickness, no strain there, a solid of revolution.

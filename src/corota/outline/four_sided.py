@@ -12,13 +12,12 @@ from corota.errors import ResourceError
 from corota.mesh.change import merge
 from corota.mesh.generate import mapped
 from corota.outline.drawing import set_name
-from corota.outline.strips import AROUND, Side
+from corota.outline.strips import AROUND, Faces, Side
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from corota.mesh.data import Mesh
-    from corota.outline.strips import Faces
 
 #: Sides of a mapped mesh in order around the part.
 SIDES = ("bottom", "right", "top", "left")

@@ -17,7 +17,7 @@ from corota.errors import FileError, InputError, ResourceError
 from corota.io.gmsh.reader import read_gmsh
 from corota.mesh.quality import corner_angles
 from corota.outline.curves import Curve
-from corota.outline.drawing import DRAWINGS, set_name
+from corota.outline.drawing import DRAWINGS, Text, set_name
 from corota.outline.four_sided import mesh_four_sided
 from corota.outline.loops import Loops, clean, contains
 from corota.outline.solids import SOLIDS, read_faces
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from corota.mesh.data import Mesh
-    from corota.outline.drawing import Text
 
 #: Largest cell relative to the diagonal of the outline, where no size is given.
 SIZE = 0.03

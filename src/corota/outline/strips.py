@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.outline.curves import Curve
-from corota.outline.loops import area, contains
+from corota.outline.loops import Loops, area, contains
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from corota.arrays import Floats, Ints
-    from corota.outline.loops import Loops
 
 
 #: Length over thickness from which a member is meshed in rows, and the largest length of its cells

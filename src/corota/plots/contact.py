@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
-from corota.model.contact import edges_or_nodes
+from corota.model.contact import ContactPair, edges_or_nodes
 from corota.plots.contour import frame_title
 from corota.plots.figure import COLORS, INK, PALE, extent_size, figure_of, finish, label_axes, look
 from corota.plots.rigid import draw_rigid
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from corota.arrays import Floats, Ints
-    from corota.model.contact import ContactPair
     from corota.results.results import Results
 
 

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from corota.arrays import Floats, Ints
-    from corota.model.model import Model
 
 
 #: Colors of sections, pale enough for symbols above them.

@@ -21,7 +21,7 @@ from corota.model.summary import model_lines
 from corota.model.units import Units
 from corota.report.chunk import pack
 from corota.report.fields import NodalArrays
-from corota.report.records import ITERATION, Records, records_of_files, records_of_results
+from corota.report.records import ITERATION, JobPaths, Records, records_of_files, records_of_results
 from corota.results import variables as vf
 from corota.results.averaging import AVERAGING
 from corota.results.derived import DERIVED
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.arrays import Ints
-    from corota.report.records import JobPaths
     from corota.results.results import Frame, Results
 
 

@@ -14,19 +14,17 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from corota.errors import CorotaError
-from corota.io.result_reader import read_vtkhdf
+from corota.io.result_reader import FileResults, read_vtkhdf
 from corota.io.stop_request import request_stop
 from corota.report.content import BITS, facts_of, frame_chunk, history_chunk, model_chunk
 from corota.report.fields import NodalArrays
 from corota.report.page import page
-from corota.report.records import JobRecords
+from corota.report.records import JobPaths, JobRecords, Records
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from types import TracebackType
 
-    from corota.io.result_reader import FileResults
-    from corota.report.records import JobPaths, Records
 
 Answer = TypeVar("Answer")
 

@@ -17,8 +17,8 @@ from corota.model import elements
 from corota.model.loads import Fixed, NodalForce
 from corota.model.materials import Elastic
 from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.observer import BaseObserver
+from corota.model.steps import Static, Step
+from corota.results.observer import BaseObserver, Iteration
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
     from corota.arrays import Floats, Ints
     from corota.mesh.generate import Diagonal, Kind
-    from corota.model.steps import Step
-    from corota.results.observer import Iteration
     from corota.results.results import Frame, Results
 
 

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.plots.figure import look, new_figure, save
-from corota.verification.catalogue import GROUPS, problems
+from corota.verification.catalogue import GROUPS, Curve, Picture, Problem, Study, Value, problems
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
     from corota.verification.outcome import Outcome
 
 #: Dots per inch: enough for a page, small enough to keep under version control.

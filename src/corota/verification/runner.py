@@ -11,13 +11,11 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from typing import TYPE_CHECKING
 
-from corota.verification.catalogue import Value, problems
+from corota.verification.catalogue import Problem, Value, problems
 from corota.verification.outcome import Outcome
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-
-    from corota.verification.catalogue import Problem
 
 
 def measure(name: str, full: bool = False, pages: str = "") -> Outcome:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.linear.triplets import Triplets
-from corota.errors import ModelError
+from corota.errors import Location, ModelError
 from corota.model.constraints import local_axes
 
 if TYPE_CHECKING:
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from corota.analysis.linear.reduction import Rows
     from corota.analysis.linear.types import Kind, Sparse
     from corota.arrays import Floats, Ints
-    from corota.errors import Location
     from corota.model.model import Model
 
 

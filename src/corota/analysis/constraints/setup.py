@@ -10,7 +10,7 @@ import numpy as np
 from corota.analysis.constraints.relations import Follow, LinearRelation, Mean, Relation
 from corota.analysis.constraints.straight_line import OnLine
 from corota.arrays import distinct
-from corota.errors import ModelError
+from corota.errors import Location, ModelError
 from corota.model.constraints import Coupling, Equation, StraightLine
 from corota.model.contact import RigidCurve, is_gap, of_gap
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.arrays import Bools, Floats, Ints
-    from corota.errors import Location
     from corota.model.model import Model
 
 

@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from corota.analysis.parallel.communicator import ALONE
+from corota.analysis.parallel.communicator import ALONE, Communicator
 
 if TYPE_CHECKING:
     from corota._core import Problem
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.linear.types import Index, Sparse
-    from corota.analysis.parallel.communicator import Communicator
     from corota.arrays import Bools, Floats, Ints
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.linear.rows import Rows
-from corota.analysis.parallel.communicator import ALONE
+from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.analysis.parallel.mpi import processes
 from corota.errors import ResourceError, SingularError, UnsupportedError
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from petsc4py import PETSc
 
     from corota.analysis.linear.types import Index
-    from corota.analysis.parallel.communicator import Communicator
     from corota.arrays import Floats
 
     Inertia = tuple[int, int, int]

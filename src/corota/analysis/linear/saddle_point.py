@@ -20,7 +20,7 @@ from corota.analysis.linear.gmres import gmres
 from corota.analysis.linear.matrix import SymmetricPattern
 from corota.analysis.linear.reduction import _union
 from corota.analysis.linear.triplets import Triplets
-from corota.analysis.parallel.communicator import ALONE
+from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.coupling import Coupling
     from corota.analysis.linear.system import LinearSystem
-    from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.timer import Timer
     from corota.arrays import Bools, Floats, Ints
 

@@ -16,14 +16,13 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.model import elements
-from corota.model.blocks import blocks_of
+from corota.model.blocks import BlockOfCells, blocks_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from corota.analysis.parallel.communicator import Communicator
     from corota.arrays import Floats, Ints
-    from corota.model.blocks import BlockOfCells
     from corota.model.model import Model
 
 

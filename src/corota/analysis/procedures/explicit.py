@@ -12,7 +12,7 @@ import numpy as np
 from corota.analysis.energies import LARGE_ERROR
 from corota.analysis.increment_loop import Accepted, IncrementLoop
 from corota.analysis.numbered_model import Role
-from corota.analysis.procedures.explicit_constraints import ReducedMass, mass_of
+from corota.analysis.procedures.explicit_constraints import FreeMass, ReducedMass, mass_of
 from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.rule import AtVelocity
 from corota.analysis.terms.contact.forward import forward_contact
@@ -23,7 +23,6 @@ from corota.errors import ConvergenceError, InputError, ModelError
 if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.procedures.explicit_constraints import FreeMass
     from corota.analysis.terms.term import StatePoint
     from corota.arrays import Bools, Floats
     from corota.model.steps import Dynamic

@@ -17,13 +17,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.errors import ConvergenceError, UnsupportedError
+from corota.errors import ConvergenceError, Location, UnsupportedError
 
 if TYPE_CHECKING:
     from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.equations import System
     from corota.arrays import Bools, Floats
-    from corota.errors import Location
 
 
 #: Unbalanced force relative to the largest that ends the iteration, and that may remain.

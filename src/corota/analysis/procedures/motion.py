@@ -11,7 +11,7 @@ import numpy as np
 
 from corota.analysis.acceleration import Acceleration
 from corota.analysis.rule import Rule
-from corota.analysis.terms.inertia import MotionState
+from corota.analysis.terms.inertia import Inertia, MotionState
 from corota.analysis.terms.term import StatePoint
 
 if TYPE_CHECKING:
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.damping import Damping
     from corota.analysis.terms.elements import Elements
-    from corota.analysis.terms.inertia import Inertia
     from corota.arrays import Bools, Floats
     from corota.model.schemes import Scheme
 

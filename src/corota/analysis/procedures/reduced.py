@@ -21,13 +21,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.linear.eigen import shifted_factor
-from corota.analysis.terms.linearized import spin
+from corota.analysis.terms.linearized import LinearMotion, spin
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.state import State
-    from corota.analysis.terms.linearized import LinearMotion
     from corota.arrays import Floats
     from corota.model.paths import Modes
     from corota.model.steps import ModalDamping, ModalDynamic, SteadyState, Step

@@ -14,7 +14,7 @@ import numpy as np
 from corota.analysis.failure import ElementFailure
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.increments import CUT, SAME
-from corota.analysis.newton import Outcome, Settings
+from corota.analysis.newton import Outcome, ResidualNorms, Settings
 from corota.analysis.procedures.carried_bodies import carried_bodies
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.errors import ConvergenceError, ModelError, SingularError
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.increment_loop import ContactIncrement, Report
-    from corota.analysis.newton import ResidualNorms
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.analysis.terms.contact.equations import ContactEquations

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 import corota._core as _core
-from corota.model.blocks import core_input
+from corota.model.blocks import BlockOfCells, core_input
 from corota.model.materials import Elastic
 from corota.model.viscoelastic import Viscoelastic
 
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.linearized import LinearMotion
     from corota.arrays import Complex, Floats
-    from corota.model.blocks import BlockOfCells
 
 
 #: Ratios between which a stiffness is interpolated where they change: its error is below 1e-8 for

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from corota.analysis.distributed import DistributedLoads
+from corota.analysis.distributed import DistributedLoad, DistributedLoads
 from corota.analysis.distributed_forces import EMPTY, END_POINT, LoadSum
 from corota.analysis.terms.element_changes import ElementChanges
 from corota.analysis.terms.load_factors import LoadFactors
@@ -24,12 +24,14 @@ from corota.analysis.terms.nodal_forces import NodalForces
 from corota.analysis.terms.redistribution import massless_nodes, set_moving_mass
 from corota.analysis.terms.supports import Supports
 from corota.analysis.terms.temperatures import Temperatures
-from corota.analysis.terms.term import Term
+from corota.analysis.terms.term import StatePoint, Term
 from corota.errors import ModelError, UnsupportedError
 from corota.model.loads import (
     LOAD_KINDS,
     BodyForce,
     EdgeLoad,
+    Fixed,
+    Load,
     NodalForce,
     Temperature,
     applied,
@@ -42,12 +44,9 @@ from corota.model.loads import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from corota.analysis.distributed import DistributedLoad
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.numbered_model import NumberedModel
-    from corota.analysis.terms.term import StatePoint
     from corota.arrays import Bools, Floats, Ints
-    from corota.model.loads import Fixed, Load
     from corota.model.steps import Step
 
 

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.term import Term
+from corota.analysis.terms.term import StatePoint, Term
 from corota.analysis.terms.viscous import ViscousElements
 
 if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.inertia import Inertia
-    from corota.analysis.terms.term import StatePoint
     from corota.arrays import Floats
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.failure import ElementFailure
-from corota.analysis.terms.term import Term
+from corota.analysis.terms.term import StatePoint, Term
 from corota.analysis.terms.user_material import NO_NUMBER, UserBlocks
 from corota.model import elements
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.conditions import Conditions
-    from corota.analysis.terms.term import StatePoint
     from corota.arrays import Floats
     from corota.model.steps import Step
 

@@ -11,13 +11,12 @@ import numpy as np
 from corota.analysis.constraints.none import IDENTITY
 from corota.analysis.terms.attachments import Attachments
 from corota.analysis.terms.redistribution import set_moving_mass
-from corota.analysis.terms.term import Term
+from corota.analysis.terms.term import StatePoint, Term
 
 if TYPE_CHECKING:
     from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.terms.term import StatePoint
     from corota.arrays import Bools, Floats
     from corota.model.steps import Step
     from corota.results.results import PointFields

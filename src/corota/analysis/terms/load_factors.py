@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from corota.errors import ModelError
+from corota.errors import Location, ModelError
 from corota.model.integrated import IntegratedAmplitude
 from corota.model.loads import Amplitude
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from corota.analysis.load_history import LoadHistory
     from corota.arrays import Floats
-    from corota.errors import Location
 
 
 class LoadFactors:

@@ -11,12 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from corota.model.steps import Dynamic, Frequency
+from corota.model.steps import Dynamic, Frequency, Step
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from corota.model.steps import Step
 
 
 @dataclass(frozen=True)

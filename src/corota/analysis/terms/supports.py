@@ -11,7 +11,7 @@ import numpy as np
 from corota.analysis.load_history import LoadHistory
 from corota.errors import ModelError
 from corota.model.dofs import DOFS
-from corota.model.loads import check_supports
+from corota.model.loads import Fixed, check_supports
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.load_factors import LoadFactors
     from corota.arrays import Bools, Floats, Ints
-    from corota.model.loads import Fixed
 
 
 class Supports:

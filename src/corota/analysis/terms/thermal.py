@@ -18,22 +18,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.parallel.communicator import ALONE
-from corota.errors import InputError, ModelError
+from corota.analysis.parallel.communicator import ALONE, Communicator
+from corota.errors import InputError, Location, ModelError
 from corota.model import elements
 from corota.model.material_table import MaterialTable
-from corota.model.materials import Expansion
+from corota.model.materials import Expansion, Material
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import TypeGuard
 
     import corota._core as _core
-    from corota.analysis.parallel.communicator import Communicator
     from corota.arrays import Floats, Ints
-    from corota.errors import Location
     from corota.model.blocks import BlockOfCells
-    from corota.model.materials import Material
     from corota.model.model import Model
 
 

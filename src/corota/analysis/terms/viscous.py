@@ -22,12 +22,11 @@ import corota._core as _core
 from corota.analysis.terms.user_material import UserBlocks
 from corota.errors import ModelError
 from corota.model import elements
-from corota.model.blocks import core_input
+from corota.model.blocks import BlockOfCells, core_input
 
 if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.arrays import Bools, Floats, Ints
-    from corota.model.blocks import BlockOfCells
 
 
 @dataclass

@@ -29,7 +29,7 @@ from corota.io.deck.drafts import (
     StepDraft,
     TieDraft,
 )
-from corota.io.deck.lexer import Card, Row, key
+from corota.io.deck.lexer import Card, Lexer, Row, key
 
 if TYPE_CHECKING:
     import os
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
     from corota.arrays import Floats, Ints
     from corota.io.deck.amplitudes import Curve
-    from corota.io.deck.lexer import Lexer
     from corota.model.loads import Amplitude
 
     #: Enters the data of cards into the model: a function of targets, which know decks, and data.

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from corota.errors import Location
 from corota.io.deck.lexer import Card, Row, key
-from corota.model.friction import largest
+from corota.model.friction import Friction, largest
 
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
-    from corota.model.friction import Friction
     from corota.model.loads import LoadKind
     from corota.model.materials import Elastic, Expansion
     from corota.model.rates import Norton

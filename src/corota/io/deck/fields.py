@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 from corota.io.deck import numerals
 from corota.io.deck.laws import LAWS
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, Row, key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card, Row
 
 #: Constants before the temperature, of the cards whose field variables are read; those of elastic
 #: laws are in their table.

@@ -3,12 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.fields import pick_rows
 from corota.io.deck.keywords import KEYWORDS, SPELLED
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, key
 from corota.io.deck.refused import (
     HEAT,
     IGNORED,
@@ -19,10 +17,6 @@ from corota.io.deck.refused import (
     UNSUPPORTED,
     WITHOUT_EFFECT,
 )
-
-if TYPE_CHECKING:
-    from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
 
 
 def interpret(deck: Deck, card: Card) -> None:

@@ -8,14 +8,13 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from corota.io.deck.laws import LAWS
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, key
 from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
 
 
 @dataclass(frozen=True)

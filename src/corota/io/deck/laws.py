@@ -14,14 +14,12 @@ from corota.model import hyperelastic as rubber
 from corota.model.hill import Hill
 from corota.model.johnson_cook import JohnsonCook
 from corota.model.material_table import MaterialTable
-from corota.model.materials import Elastic, Orthotropic
+from corota.model.materials import Elastic, Material, Orthotropic
 from corota.model.plasticity import Mises
 from corota.model.ramberg_osgood import RambergOsgood
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-
-    from corota.model.materials import Material
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING
 import corota._core as _core
 from corota.errors import Diagnostic, FileError, InputError, Location
 from corota.io.deck import numerals
-from corota.io.deck.parameters import Parameters
+from corota.io.deck.parameters import Parameters, Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from corota.io.deck.parameters import Value
 
 #: Files inside files.
 MAX_DEPTH = 16

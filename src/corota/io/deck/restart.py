@@ -12,13 +12,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from corota.errors import FileError
-from corota.io.deck.lexer import Lexer
+from corota.io.deck.lexer import Card, Lexer
 from corota.io.provenance import changed_file
 
 if TYPE_CHECKING:
     from corota.io.checkpoint import Saved
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
 
 #: Cards that such a deck may have before its first step.
 ALLOWED = ("HEADING", "RESTART", "AMPLITUDE", "NSET", "ELSET", "SURFACE", "TIMEPOINTS", "PREPRINT")

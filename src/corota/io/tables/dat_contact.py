@@ -14,14 +14,13 @@ import numpy as np
 
 from corota.arrays import distinct
 from corota.io.tables.dat_numbers import fortran, rows
-from corota.model.contact import RigidCurve, edges_or_nodes, joint_thickness
+from corota.model.contact import ContactPair, RigidCurve, edges_or_nodes, joint_thickness
 from corota.model.sections import thickness_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from corota.arrays import Floats, Ints
-    from corota.model.contact import ContactPair
     from corota.model.model import Model
     from corota.model.steps import Output
     from corota.results.results import Frame

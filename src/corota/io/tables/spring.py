@@ -10,12 +10,10 @@ import numpy as np
 from corota.errors import InputError
 from corota.io.atomic_file import replace_text
 from corota.results.measures import COMPONENTS
-from corota.results.stage_results import STILL
+from corota.results.stage_results import STILL, StageResults
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from corota.results.stage_results import StageResults
 
 
 #: Dofs of the components in decks, and their names.

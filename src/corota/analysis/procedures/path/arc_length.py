@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.failure import ElementFailure, GiveUp
-from corota.analysis.increment_loop import Accepted
-from corota.analysis.newton import Settings
+from corota.analysis.increment_loop import Accepted, IncrementLoop
+from corota.analysis.newton import ResidualNorms, Settings
 from corota.analysis.path_system import Point, Tangent
 from corota.analysis.procedures.path.branches import BranchTracer
 from corota.analysis.procedures.path.controls import Row
 from corota.analysis.procedures.path.corrector import tangent_at
-from corota.analysis.procedures.path.plan import End, PathStalled, Plan
+from corota.analysis.procedures.path.plan import End, Increment, PathStalled, Plan
 from corota.analysis.procedures.stopping import plateau
 from corota.analysis.terms.contact.path import path_system
 from corota.errors import ConvergenceError, InputError, ModelError, SingularError
@@ -30,9 +30,6 @@ from corota.model.steps import Static
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from corota.analysis.increment_loop import IncrementLoop
-    from corota.analysis.newton import ResidualNorms
-    from corota.analysis.procedures.path.plan import Increment
     from corota.analysis.procedures.path.stability import Critical
     from corota.model.paths import Where
 

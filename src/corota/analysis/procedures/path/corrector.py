@@ -14,14 +14,13 @@ import numpy as np
 
 from corota.analysis.failure import ElementFailure, GiveUp
 from corota.analysis.newton import DIVERGED, ResidualNorms, Settings
-from corota.analysis.path_system import Metric, Point, Tangent, product
+from corota.analysis.path_system import Metric, PathSystem, Point, Tangent, product
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.path_system import PathSystem
     from corota.analysis.procedures.path.controls import Control
 
 

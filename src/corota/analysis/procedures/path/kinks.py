@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.path_system import Metric, Point, Tangent
+from corota.analysis.path_system import Metric, PathSystem, Point, Tangent
 from corota.analysis.procedures.path.corrector import tangent_at
 
 if TYPE_CHECKING:
-    from corota.analysis.path_system import PathSystem
     from corota.arrays import Floats
 
 

@@ -7,11 +7,10 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
-from corota.analysis.procedures.path.controls import Factor, Row
+from corota.analysis.procedures.path.controls import Control, Factor, Row
 
 if TYPE_CHECKING:
     from corota.analysis.path_system import Point, Tangent
-    from corota.analysis.procedures.path.controls import Control
     from corota.analysis.procedures.path.stability import Critical
 
 

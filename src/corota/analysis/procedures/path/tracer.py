@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from corota.analysis.path_system import Metric, Point, Tangent
-from corota.analysis.procedures.path.controls import Arc, Factor, Plane, Row
-from corota.analysis.procedures.path.corrector import STILL, correct, tangent_at
+from corota.analysis.path_system import Metric, PathSystem, Point, Tangent
+from corota.analysis.procedures.path.controls import Arc, Control, Factor, Plane, Row
+from corota.analysis.procedures.path.corrector import STILL, Corrected, correct, tangent_at
 from corota.analysis.procedures.path.kinks import direction, sense_behind, shares
 from corota.analysis.procedures.path.plan import End, Increment, PathStalled, Plan
 from corota.analysis.procedures.path.stability import (
@@ -36,9 +36,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from corota.analysis.newton import ResidualNorms, Settings
-    from corota.analysis.path_system import PathSystem
-    from corota.analysis.procedures.path.controls import Control
-    from corota.analysis.procedures.path.corrector import Corrected
     from corota.arrays import Floats
 
     Report = Callable[[int, int, ResidualNorms, float, float, float], None]

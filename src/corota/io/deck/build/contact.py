@@ -10,11 +10,11 @@ import numpy as np
 from corota.errors import InputError
 from corota.io.deck import numerals
 from corota.io.deck.build.general_contact import add_general
-from corota.io.deck.build.mesh import placed, views_in
+from corota.io.deck.build.mesh import View, placed, views_in
 from corota.io.deck.build.ties import single_node
 from corota.io.deck.cards.contact import interaction_of
-from corota.io.deck.deck import nearest
-from corota.io.deck.lexer import key
+from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.lexer import Card, key
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
 from corota.model.steps import Buckle, Frequency, Visco
 
@@ -22,11 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.arrays import Bools, Floats, Ints
-    from corota.io.deck.build.mesh import View
     from corota.io.deck.build.sets import Sets
-    from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import Draft, InteractionDraft, PairDraft, Surface, SurfaceRow
-    from corota.io.deck.lexer import Card
     from corota.mesh.data import Mesh
     from corota.model.model import Model
 

@@ -13,16 +13,13 @@ from scipy.sparse.csgraph import connected_components
 
 from corota.io.deck import numerals
 from corota.io.deck.cards.contact import begins_in
-from corota.io.deck.deck import nearest
-from corota.io.deck.drafts import InteractionDraft, PairDraft, StartDraft, Surface
-from corota.io.deck.lexer import Row, key
+from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.drafts import GeneralDraft, InteractionDraft, PairDraft, StartDraft, Surface
+from corota.io.deck.lexer import Card, Row, key
 
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
     from corota.io.deck.build.sets import Sets
-    from corota.io.deck.deck import Deck
-    from corota.io.deck.drafts import GeneralDraft
-    from corota.io.deck.lexer import Card
     from corota.model.model import Model
 
 #: Names of the surface of all outer edges, and of contact that no card describes.

@@ -16,7 +16,7 @@ from corota.io.deck.elements import SHELLS
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.mesh.parts import cells_of
-from corota.model.loads import BodyForce, EdgeLoad, Fixed, NodalForce
+from corota.model.loads import BodyForce, EdgeLoad, Fixed, Load, NodalForce, Temperature
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from corota.arrays import Ints
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import Draft, StepDraft
-    from corota.model.loads import Load, Temperature
 
 base_motion = lazy("corota.io.deck.build.base_motion:base_motion")
 build_temperature = lazy("corota.io.deck.cards.thermal:build_temperature")

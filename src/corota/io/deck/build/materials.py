@@ -16,7 +16,7 @@ from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.model.material_table import MaterialTable
 from corota.model.plasticity import Mises
-from corota.model.rates import Norton, RateCurves
+from corota.model.rates import Norton, Rate, RateCurves
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import MaterialDraft
     from corota.model.materials import Material
-    from corota.model.rates import Rate
 
 build_mises = lazy("corota.io.deck.cards.plastic:build_mises")
 build_viscoelastic = lazy("corota.io.deck.cards.viscoelastic:build_viscoelastic")

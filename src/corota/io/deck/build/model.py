@@ -13,19 +13,17 @@ from corota.io.deck.build.materials import share_damping
 from corota.io.deck.build.mesh import MeshBuilder, views_in
 from corota.io.deck.build.sections import SectionBuilder
 from corota.io.deck.build.targets import Targets
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, Stage, nearest
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.model.element_changes import ElementChange
 from corota.model.model import Model
-from corota.model.steps import Buckle, Static, SteadyState
+from corota.model.steps import Buckle, Static, SteadyState, Step
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from corota.io.deck.deck import Deck, Stage
     from corota.io.deck.drafts import Draft, StepDraft
-    from corota.model.steps import Step
 
 # Parts that few decks have.
 add_releases = lazy("corota.io.deck.cards.release:add_releases")

@@ -18,7 +18,7 @@ import numpy as np
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import views_in
 from corota.io.deck.build.ties import single_node
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, nearest
 from corota.mesh.kinds import EDGES
 from corota.model.constraints import Equation, LocalAxes
 from corota.model.loads import Fixed, InitialTemperature, InitialVelocity, Temperature
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from corota.arrays import Bools, Floats, Ints
     from corota.io.deck.build.sets import Sets
-    from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import Draft, PretensionDraft
     from corota.mesh.data import Mesh
     from corota.model.model import Model

@@ -30,8 +30,8 @@ from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.mesh.parts import nodes_of_cells
 from corota.model.hyperelastic import with_ratio
-from corota.model.local_strain import dialect_strain
-from corota.model.sections import Section
+from corota.model.local_strain import LocalStrain, dialect_strain
+from corota.model.sections import Plane, Section
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,9 +39,7 @@ if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import SectionDraft
-    from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
-    from corota.model.sections import Plane
 
 
 #: Elements that are the same at small strain and stay stable at large strain.

@@ -11,10 +11,10 @@ import numpy as np
 
 from corota.arrays import distinct
 from corota.io.deck import numerals
-from corota.io.deck.build.mesh import view_of
+from corota.io.deck.build.mesh import MeshBuilder, View, view_of
 from corota.io.deck.deck import nearest
 from corota.io.deck.elements import WITH_SIDES
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, key
 from corota.mesh.kinds import EDGES
 
 if TYPE_CHECKING:
@@ -22,9 +22,7 @@ if TYPE_CHECKING:
 
     from corota.arrays import Ints
     from corota.errors import Location
-    from corota.io.deck.build.mesh import MeshBuilder, View
     from corota.io.deck.drafts import NamedSet, Surface, SurfaceRow
-    from corota.io.deck.lexer import Card
     from corota.mesh.data import Mesh
 
 _FACE = r"([SE])(\d{1,9})\Z"

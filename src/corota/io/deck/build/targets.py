@@ -10,7 +10,7 @@ import numpy as np
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import MeshBuilder, View, view_of
 from corota.io.deck.build.sets import Elements, Sets
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.lexer import key
 from corota.model.model import Model
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from corota.arrays import Floats, Ints
-    from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import Draft, TieDraft
 
 

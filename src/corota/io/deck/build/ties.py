@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from corota.errors import InputError
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.lexer import key
 from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from typing import Literal
 
     from corota.arrays import Bools, Floats, Ints
-    from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import Draft, TieDraft
     from corota.model.model import Model
 

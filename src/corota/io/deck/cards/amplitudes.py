@@ -13,12 +13,11 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io.deck.amplitudes import Curve, smooth_steps
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, key
 from corota.model.loads import Amplitude
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
 
 
 #: Curves without an end, and their numbers after the initial value, size and start.

@@ -4,15 +4,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.drafts import Instance, Scope
-from corota.io.deck.lexer import key
-
-if TYPE_CHECKING:
-    from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
+from corota.io.deck.lexer import Card, key
 
 
 def part(deck: Deck, card: Card) -> None:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.errors import InputError
+from corota.errors import InputError, Location
 from corota.io.deck.cards.tie import PLANAR
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.drafts import AttachedDraft, Draft
 from corota.io.deck.elements import ATTACHED
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, Row, key
 from corota.lazy import lazy
 from corota.model.attachments import Dashpot, PointMass
 from corota.model.contact import gap_element
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.arrays import Bools, Ints
-    from corota.errors import Location
-    from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card, Row
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]

@@ -14,7 +14,7 @@ from corota.io.deck.cards.release import point_of
 from corota.io.deck.cards.step import open_step
 from corota.io.deck.cards.supports import RATES
 from corota.io.deck.cards.tie import PLANAR
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.drafts import (
     AttachedDraft,
     BehaviorDraft,
@@ -28,7 +28,7 @@ from corota.io.deck.drafts import (
     TieDraft,
 )
 from corota.io.deck.elements import LINE_ELEMENTS
-from corota.io.deck.lexer import Row, key
+from corota.io.deck.lexer import Card, Row, key
 from corota.model.constraints import Coupling, Equation
 from corota.model.contact import gap_element
 from corota.model.loads import Fixed
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
 
     from corota.arrays import Bools, Ints
     from corota.errors import Location
-    from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]

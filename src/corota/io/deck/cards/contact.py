@@ -5,23 +5,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.errors import InputError
+from corota.errors import InputError, Location
 from corota.io.deck import numerals
-from corota.io.deck.deck import nearest
-from corota.io.deck.drafts import Draft, InteractionDraft, PairDraft
-from corota.io.deck.lexer import key
-from corota.model.friction import MOST_FRICTION, DecayingFriction, FrictionTable
-
-if TYPE_CHECKING:
-    from corota.errors import Location
-    from corota.io.deck.deck import Deck
-    from corota.io.deck.drafts import StepDraft, Surface
-    from corota.io.deck.lexer import Card, Row
-    from corota.model.friction import Friction
+from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.drafts import Draft, InteractionDraft, PairDraft, StepDraft, Surface
+from corota.io.deck.lexer import Card, Row, key
+from corota.model.friction import MOST_FRICTION, DecayingFriction, Friction, FrictionTable
 
 #: Types of contact pairs of CalculiX and Abaqus, and the discretization here.
 TYPES = {

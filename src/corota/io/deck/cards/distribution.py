@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.drafts import DistributionDraft
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, Row, key
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
     from corota.io.deck.build.mesh import View
     from corota.io.deck.build.sets import Sets
-    from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card, Row
 
     Read = Callable[[Deck, Card, Row, int], float | None]
 

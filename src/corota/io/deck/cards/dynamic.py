@@ -10,8 +10,8 @@ from corota.io.deck.cards.step import keeps_preload, open_step, step_times
 from corota.io.deck.cards.supports import RATES
 from corota.io.deck.cards.thermal import initial_stress, initial_temperature
 from corota.io.deck.cards.tie import parameter_row
-from corota.io.deck.drafts import Draft
-from corota.io.deck.lexer import key
+from corota.io.deck.drafts import Draft, MaterialDraft, StepDraft
+from corota.io.deck.lexer import Card, key
 from corota.lazy import lazy
 from corota.model.loads import InitialVelocity
 from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
@@ -19,8 +19,6 @@ from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
 if TYPE_CHECKING:
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.deck import Deck
-    from corota.io.deck.drafts import MaterialDraft, StepDraft
-    from corota.io.deck.lexer import Card
 
 
 #: Values of ``APPLICATION=`` with their ALPHA of HHT.

@@ -7,11 +7,10 @@ import math
 from typing import TYPE_CHECKING
 
 from corota.io.deck.drafts import GeneralDraft, StartDraft
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, key
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
 
 
 def general(deck: Deck, card: Card) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from corota.errors import FileError
 from corota.io.deck.drafts import Draft
-from corota.io.deck.lexer import Row
+from corota.io.deck.lexer import Card, Row
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from corota.arrays import Ints
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
     from corota.mesh import Mesh
     from corota.results.frame import Frame
 

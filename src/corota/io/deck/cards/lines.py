@@ -11,10 +11,10 @@ import numpy as np
 from corota import profiles
 from corota.arrays import distinct
 from corota.errors import InputError
-from corota.io.deck.drafts import LineDraft
+from corota.io.deck.drafts import LineDraft, SectionDraft
 from corota.io.deck.elements import LINE_ELEMENTS
-from corota.io.deck.lexer import Row, key
-from corota.model.materials import Elastic
+from corota.io.deck.lexer import Card, Row, key
+from corota.model.materials import Elastic, Material
 from corota.model.sections import Section
 
 if TYPE_CHECKING:
@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from corota.io.deck.build.mesh import MeshBuilder
     from corota.io.deck.build.sets import Sets
     from corota.io.deck.deck import Deck
-    from corota.io.deck.drafts import SectionDraft
-    from corota.io.deck.lexer import Card
-    from corota.model.materials import Material
     from corota.model.model import Model
     from corota.profiles import Profile
 

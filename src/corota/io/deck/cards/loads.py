@@ -7,18 +7,12 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING
 
 from corota.io.deck.cards.step import loads_of, open_step
 from corota.io.deck.cards.supports import dof_of
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.drafts import Draft, StepDraft
-from corota.io.deck.lexer import key
-
-if TYPE_CHECKING:
-    from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card, Row
-
+from corota.io.deck.lexer import Card, Row, key
 
 _FACE = r"(H?P)(\d{1,9})\Z"
 _TRACTION = r"(TRVEC|TRSHR)(\d{1,9})\Z"

@@ -10,15 +10,13 @@ from corota.io.deck import numerals
 from corota.io.deck.cards.distribution import plane_angle
 from corota.io.deck.cards.step import turns_nlgeom_on
 from corota.io.deck.drafts import Draft, MaterialDraft, NonstructuralDraft, SectionDraft
-from corota.io.deck.laws import LAWS
-from corota.io.deck.lexer import key
+from corota.io.deck.laws import LAWS, DeckLaw
+from corota.io.deck.lexer import Card, Row, key
 from corota.lazy import lazy
 from corota.model.local_strain import ALIASES, LOCAL_STRAINS, local_strain
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
-    from corota.io.deck.laws import DeckLaw
-    from corota.io.deck.lexer import Card, Row
 
 add_nonstructural = lazy("corota.io.deck.build.nonstructural:add_nonstructural")
 

@@ -3,17 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, cast
+from typing import Literal, cast
 
 from corota.io.deck import numerals
-from corota.io.deck.deck import nearest
-from corota.io.deck.lexer import key
+from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.lexer import Card, key
 from corota.model.steps import Output
 from corota.results.table import requests
-
-if TYPE_CHECKING:
-    from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
 
 Kind = Literal[
     "node print",

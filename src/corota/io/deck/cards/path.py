@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 from corota.errors import InputError
 from corota.io.deck.cards import step as inp_cards_step
 from corota.io.deck.cards.step import keeps_preload, open_step
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, key
 from corota.model.paths import ArcLength, Label
 from corota.model.steps import Buckle
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import StepDraft
-    from corota.io.deck.lexer import Card
 
 #: Values of *CONTROLS that are used here: position in its line, option of the step.
 _CONTROLS = {"FIELD": (0, "tolerance"), "TIMEINCREMENTATION": (4, "max_iterations")}

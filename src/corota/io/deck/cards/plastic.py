@@ -11,7 +11,7 @@ from corota.errors import InputError
 from corota.io.deck import numerals
 from corota.io.deck.cards.material import open_material
 from corota.io.deck.cards.rates import johnson_cook
-from corota.io.deck.drafts import CurveDraft, PlasticDraft
+from corota.io.deck.drafts import CurveDraft, MaterialDraft, PlasticDraft
 from corota.model.hill import Hill
 from corota.model.plasticity import Mises, Voce
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.io.deck.deck import Deck
-    from corota.io.deck.drafts import MaterialDraft
     from corota.io.deck.lexer import Card
 
 #: Back-stresses that one material may have.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from corota.errors import InputError
 from corota.io.deck.cards.material import open_material
 from corota.io.deck.cards.step import open_step, step_times
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, key
 from corota.model.johnson_cook import JohnsonCook
 from corota.model.rates import CowperSymonds, Norton, YieldRatio
 from corota.model.steps import Visco
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import MaterialDraft
-    from corota.io.deck.lexer import Card
     from corota.model.materials import Material
 
 #: Values of ``TYPE=`` of ``*RATE DEPENDENT``.

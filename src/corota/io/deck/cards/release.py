@@ -9,15 +9,13 @@ import numpy as np
 
 from corota.errors import Location
 from corota.io.deck import numerals
-from corota.io.deck.drafts import Draft, NodeBlock, ReleaseDraft, TieDraft
+from corota.io.deck.drafts import Draft, ElementBlock, NodeBlock, ReleaseDraft, Scope, TieDraft
 from corota.io.deck.elements import LINE_ELEMENTS
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, key
 
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
     from corota.io.deck.deck import Deck
-    from corota.io.deck.drafts import ElementBlock, Scope
-    from corota.io.deck.lexer import Card
 
 #: Ends of an element.
 ENDS = {"S1": 0, "S2": -1}

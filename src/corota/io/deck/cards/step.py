@@ -8,12 +8,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from corota.io.deck.drafts import StepDraft
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, key
 from corota.model.steps import Dynamic
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
     from corota.model.loads import LoadKind
 
 

@@ -3,17 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from corota.io.deck.cards.step import renews
-from corota.io.deck.deck import nearest
+from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.drafts import Draft
-from corota.io.deck.lexer import key
-
-if TYPE_CHECKING:
-    from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card, Row
-
+from corota.io.deck.lexer import Card, Row, key
 
 #: Names of Abaqus for groups of degrees of freedom (numbers from 1).
 NAMED_SUPPORTS = {

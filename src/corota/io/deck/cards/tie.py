@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 from corota.io.deck.cards.step import turns_nlgeom_on
 from corota.io.deck.drafts import Draft, TieDraft
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, Row, key
 from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card, Row
 
 link = lazy("corota.io.deck.cards.connectors:link")
 

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 from corota.errors import InputError
 from corota.io.deck.cards.material import open_material
-from corota.io.deck.lexer import key
+from corota.io.deck.lexer import Card, key
 from corota.model.material_table import MaterialTable
 from corota.model.viscoelastic import WLF, Viscoelastic
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import MaterialDraft
-    from corota.io.deck.lexer import Card
     from corota.model.materials import Material
 
 

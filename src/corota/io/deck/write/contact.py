@@ -11,16 +11,14 @@ import numpy as np
 
 from corota.errors import UnsupportedError
 from corota.mesh.parts import cells_of
-from corota.model.contact import RigidCurve, edges_or_nodes, is_gap
-from corota.model.friction import DecayingFriction, FrictionTable
+from corota.model.contact import ContactPair, PressureLaw, RigidCurve, edges_or_nodes, is_gap
+from corota.model.friction import DecayingFriction, Friction, FrictionTable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from corota.arrays import Floats, Ints
     from corota.io.deck.write.text import Writer
-    from corota.model.contact import ContactPair, PressureLaw
-    from corota.model.friction import Friction
     from corota.model.model import Model
 
 #: Arcs are cut into pieces of at most this angle [rad]; a deck's are less than half a turn.

@@ -13,7 +13,7 @@ import numpy as np
 from corota.errors import UnsupportedError
 from corota.io.deck.write.text import DOFS, Writer, number, numbers, plain
 from corota.io.deck.write.thermal import temperatures
-from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature
+from corota.model.loads import AppliedLoad, BodyForce, EdgeLoad, Fixed, NodalForce, Temperature
 from corota.model.sections import thickness_at
 
 if TYPE_CHECKING:
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from corota.arrays import Ints
     from corota.mesh import Mesh
-    from corota.model.loads import AppliedLoad, Fixed
 
 #: Abscissas and weights of Gauss's rule of three points over a curved edge.
 _GAUSS = (np.array([-math.sqrt(0.6), 0.0, math.sqrt(0.6)]), np.array([5.0, 8.0, 5.0]) / 9.0)

@@ -16,7 +16,7 @@ from corota.io.deck.write.contact import surfaces
 from corota.io.deck.write.loads import boundary, ending, load_cards
 from corota.io.deck.write.text import DOFS, Writer, number, numbers, plain
 from corota.model.dofs import dof_index
-from corota.model.loads import applied, applied_in_step, given_as, kind_of
+from corota.model.loads import AppliedLoad, LoadKind, applied, applied_in_step, given_as, kind_of
 from corota.model.paths import ArcLength, Label
 from corota.model.steps import (
     Buckle,
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from corota.io.deck.write.compare import Written
-    from corota.model.loads import AppliedLoad, LoadKind
 
 #: Cards that remove the loads of a kind.
 _NEW: dict[LoadKind, str] = {"force": "CLOAD", "distributed": "DLOAD", "temperature": "TEMPERATURE"}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import UnsupportedError
-from corota.model.materials import Expansion
+from corota.model.materials import Expansion, Material
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from corota.arrays import Ints
     from corota.io.deck.write.text import Writer
-    from corota.model.materials import Material
     from corota.model.model import Model
 
 
