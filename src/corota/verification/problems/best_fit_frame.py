@@ -61,11 +61,6 @@ def measure() -> Iterator[Value]:
             yield Value(f"strain across in its axes, {text}", known[1], found[1], 1e-9)
 
 
-def picture() -> Picture:
-    """The sheared rectangle of aspect 4."""
-    return Picture(sheared("Q4", 4.0), "U1")
-
-
 def curve() -> Curve:
     """Strain across against the aspect."""
     aspect = np.geomspace(1.0, 16.0, 40)
@@ -84,7 +79,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="rounding",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(sheared("Q4", 4.0), "U1"),
     curve=curve,
     seconds=0.2,
 )

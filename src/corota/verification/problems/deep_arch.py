@@ -47,11 +47,6 @@ def measure() -> Iterator[Value]:
     yield Value("second limit load, Q8", SECOND, LOAD * points[1].factor, 0.02)
 
 
-def picture() -> Picture:
-    """The end of the path."""
-    return Picture(solved(fields=True)[0], "S11")
-
-
 def curve() -> Curve:
     """Load against the deflection of the crown."""
     results, crown = solved()
@@ -73,7 +68,7 @@ PROBLEM = Problem(
     why="shear and extension at this depth lower the load by half a thousandth; the second limit "
     "load is a small difference",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(solved(fields=True)[0], "S11"),
     curve=curve,
     seconds=2.5,
 )

@@ -136,11 +136,6 @@ def measure() -> Iterator[Value]:
                     )
 
 
-def picture() -> Picture:
-    """The bar as a solid, pressed."""
-    return Picture(solved("Q8", -1.0, fields=True)[0], "S11")
-
-
 def curve() -> Curve:
     """Distances against the load, both signs."""
     loads = np.concatenate([-np.array(LOADS[::-1]), [0.0], LOADS])
@@ -162,7 +157,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="60 straight beams for the curve; the solid's depth of a hundredth, as for the elastica",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(solved("Q8", -1.0, fields=True)[0], "S11"),
     curve=curve,
     seconds=1.0,
 )

@@ -62,11 +62,6 @@ def measure() -> Iterator[Value]:
         yield Value(f"force that passes, {element} {n} x {n}", 0.5 * LOAD, force, 1e-9)
 
 
-def picture() -> Picture:
-    """Mises stress."""
-    return Picture(solved("Q4I", 48), "MISES")
-
-
 def curve() -> Curve:
     """Pressure over the place."""
     x, p = pressures(solved("Q4I", 48))
@@ -100,7 +95,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="about nine cells are in contact; pressures at nodes alternate about the ellipse",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(solved("Q4I", 48), "MISES"),
     curve=curve,
     study=study,
     seconds=2.0,

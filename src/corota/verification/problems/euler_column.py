@@ -63,11 +63,6 @@ def measure() -> Iterator[Value]:
     yield Value("shortening there", 100.0 * shortening, -last.U[tip, 0], 2e-2)
 
 
-def picture() -> Picture:
-    """The end of the branch."""
-    return Picture(solved(fields=True)[0], "S11")
-
-
 def curve() -> Curve:
     """Load against deflection beside the elastica."""
     results, tip = solved()
@@ -114,7 +109,7 @@ PROBLEM = Problem(
     why="shear and shortening of a column whose depth is a fiftieth of its length; drilling "
     "elements are a little soft on regular meshes",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(solved(fields=True)[0], "S11"),
     curve=curve,
     study=study,
     seconds=0.4,

@@ -69,11 +69,6 @@ def measure() -> Iterator[Value]:
                 yield Value(f"{name}: {which} limit load{said}", load, point.factor, tolerance)
 
 
-def picture() -> Picture:
-    """Bending moments in Lee's frame at the end of its path."""
-    return Picture(solved("Lee's frame")[0], "M1")
-
-
 def curve() -> Curve:
     """Load against displacement of the loaded point of Lee's frame."""
     results, node = solved("Lee's frame")
@@ -95,7 +90,7 @@ PROBLEM = Problem(
     certainty="computed independently",
     why="chords of the elements stand for the curve: an error of the square of their length",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(solved("Lee's frame")[0], "M1"),
     curve=curve,
     seconds=8.0,
 )

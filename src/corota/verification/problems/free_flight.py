@@ -68,11 +68,6 @@ def measure() -> Iterator[Value]:
     yield Value("angular momentum that the trapezoidal rule loses", 1e-6, lost, 0.0, "at least")
 
 
-def picture() -> Picture:
-    """The end of the flight."""
-    return Picture(solved("Q4I", fields=True), "MISES")
-
-
 def curve() -> Curve:
     """Angular momentum of two schemes."""
     series = {}
@@ -89,7 +84,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="rounding and Newton's tolerance of 1e-11",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(solved("Q4I", fields=True), "MISES"),
     curve=curve,
     seconds=4.0,
 )

@@ -90,11 +90,6 @@ def measure() -> Iterator[Value]:
     yield Value("friction of the dragged block", -3.0, last["pair: force x"], 2e-3)
 
 
-def picture() -> Picture:
-    """The end of the drag."""
-    return Picture(dragged(fields=True), "S22")
-
-
 PROBLEM = Problem(
     title="Stick and slip of a block",
     group="contact",
@@ -102,6 +97,6 @@ PROBLEM = Problem(
     certainty="analytic",
     why="rounding; the dragged block's surface is bent a little by the pressure",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(dragged(fields=True), "S22"),
     seconds=0.5,
 )

@@ -109,11 +109,6 @@ def measure() -> Iterator[Value]:
     yield Value("alpha T of the column, Q8 40 x 1", critical, ALPHA * factor, 1e-3)
 
 
-def picture() -> Picture:
-    """The bent strip."""
-    return Picture(strip(fields=True), "S11")
-
-
 def curve() -> Curve:
     """Deflection against the temperature."""
     results = strip()
@@ -140,7 +135,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="rounding; for the strip its ends and the mesh, for the column shear and shortening",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(strip(fields=True), "S11"),
     curve=curve,
     seconds=1.0,
 )

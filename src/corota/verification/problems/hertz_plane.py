@@ -93,11 +93,6 @@ def measure() -> Iterator[Value]:
         yield Value(f"force between two plates, {text}", FORCE, reaction, 0.005)
 
 
-def picture() -> Picture:
-    """Mises stress."""
-    return Picture(solved("strain", "Q4I", 48), "MISES")
-
-
 def curve() -> Curve:
     """Shear stress below the middle over depth, by the theory and computed."""
     a, p0 = theory("strain")
@@ -135,7 +130,7 @@ PROBLEM = Problem(
     why="Hertz assumes a half space: in the quarter disc the shear stress below is 2.5 % lower, "
     "also on finer meshes; stresses at nodes are averages",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(solved("strain", "Q4I", 48), "MISES"),
     curve=curve,
     study=study,
     seconds=0.8,

@@ -111,11 +111,6 @@ def measure() -> Iterator[Value]:
         yield Value(f"force that passes, {text}", 0.5 * LOAD, force, 1e-9)
 
 
-def picture() -> Picture:
-    """Mises stress about the contact."""
-    return Picture(roller(20, "Q8R", fields=True), "MISES")
-
-
 def curve() -> Curve:
     """Pressure over the place."""
     x, p = pressures(roller(20, "Q8R"))
@@ -150,7 +145,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="Hertz's bodies are half spaces; the contact is an eighth of the radius wide",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(roller(20, "Q8R", fields=True), "MISES"),
     curve=curve,
     study=study,
     seconds=4.0,

@@ -76,11 +76,6 @@ def measure() -> Iterator[Value]:
         )
 
 
-def picture() -> Picture:
-    """The end of the loading."""
-    return Picture(bent(4, fields=True)[0], "S11")
-
-
 def curve() -> Curve:
     """Motion of the end."""
     series = {f"Q4, load {load:g}": moved(load) for load in MOTION}
@@ -101,7 +96,7 @@ PROBLEM = Problem(
     certainty="computed independently",
     why="half of the last digit printed",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(bent(4, fields=True)[0], "S11"),
     curve=curve,
     seconds=1.0,
 )

@@ -102,11 +102,6 @@ def measure() -> Iterator[Value]:
     yield Value("period, point mass on a bar", MASS_PERIOD, on_a_bar(), 1e-3)
 
 
-def picture() -> Picture:
-    """Some moment of the swing."""
-    return Picture(swing("Q4D", 0.2, fields=True), "U2")
-
-
 def curve() -> Curve:
     """Position of the end."""
     time, x = tip(swing("Q4D"))
@@ -136,7 +131,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="flexibility of the rod and 200 increments a period",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(swing("Q4D", 0.2, fields=True), "U2"),
     curve=curve,
     study=study,
     seconds=6.0,

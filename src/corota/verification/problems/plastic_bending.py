@@ -103,11 +103,6 @@ def measure() -> Iterator[Value]:
             yield Value(f"stress at the {name} of the loop, {kind}", exact, found, 1e-9)
 
 
-def picture() -> Picture:
-    """The cantilever's plastic zones."""
-    return Picture(cantilever(1.45, fields=True)[0], "PEEQ")
-
-
 def curve() -> Curve:
     """Moment against curvature."""
     k = np.linspace(0.2, 10.0, 25)
@@ -127,7 +122,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="ten layers with three points each across the depth; loops are exact",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(cantilever(1.45, fields=True)[0], "PEEQ"),
     curve=curve,
     seconds=1.0,
 )

@@ -63,11 +63,6 @@ def measure() -> Iterator[Value]:
                 yield Value(f"{name}, {element}, {mass}", known, found, 1e-12)
 
 
-def picture() -> Picture:
-    """The mesh."""
-    return Picture(block("Q4D"))
-
-
 PROBLEM = Problem(
     title="Rigid spin",
     group="dynamics",
@@ -75,6 +70,6 @@ PROBLEM = Problem(
     certainty="analytic",
     why="rounding",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(block("Q4D")),
     seconds=0.3,
 )

@@ -75,11 +75,6 @@ def measure() -> Iterator[Value]:
         )
 
 
-def picture() -> Picture:
-    """Equivalent plastic strain and the front."""
-    return Picture(ring("Q8", 12, "stress", perfect(0.3), nadai(FRONT)[0])[0], "PEEQ", 100.0)
-
-
 def curve() -> Curve:
     """Radial stress over the radius."""
     p, _, radial = nadai(FRONT)
@@ -100,7 +95,9 @@ PROBLEM = Problem(
     certainty="analytic",
     why="the plastic front passes through cells of 1/12 of the width",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(
+        ring("Q8", 12, "stress", perfect(0.3), nadai(FRONT)[0])[0], "PEEQ", 100.0
+    ),
     curve=curve,
     seconds=2.0,
 )

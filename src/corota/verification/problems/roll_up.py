@@ -64,11 +64,6 @@ def measure() -> Iterator[Value]:
             )
 
 
-def picture() -> Picture:
-    """Three quarters of a circle would be open; this is the whole."""
-    return Picture(solved("OPT", 100, 2, fields=True), "U1")
-
-
 def curve() -> Curve:
     """Path of the end, and the exact cycloid-like curve sin(a)/a, (1 - cos a)/a."""
     path = places(solved("Q4D", 100, 4), every=True)
@@ -98,7 +93,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="membrane and bending of a depth of a hundredth of the length, and the mesh",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(solved("OPT", 100, 2, fields=True), "U1"),
     curve=curve,
     study=study,
     seconds=2.1,

@@ -98,11 +98,6 @@ def measure() -> Iterator[Value]:
         yield Value(f"angle of the column at P L / k = {load:g}", exact(load), angle(load), 1e-6)
 
 
-def picture() -> Picture:
-    """The column on its spring."""
-    return Picture(column(1.0, NUDGE))
-
-
 def curve() -> Curve:
     """Load against angle."""
     loads = np.linspace(0.02, 2.0, 60)
@@ -121,7 +116,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="rounding; the column bends by a millionth",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(column(1.0, NUDGE)),
     curve=curve,
     seconds=0.3,
 )

@@ -49,11 +49,6 @@ def measure() -> Iterator[Value]:
             yield Value(f"frequency {k + 1} [Hz], {element} 16 x 8", EXACT[k], found, 0.01)
 
 
-def picture() -> Picture:
-    """The model."""
-    return Picture(tapered("Q8"))
-
-
 def study() -> Study:
     """Largest error of the first three."""
     series = {}
@@ -74,7 +69,7 @@ PROBLEM = Problem(
     certainty="published",
     why="five digits of the source on quadratic meshes; 1 % on linear ones of this size",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(tapered("Q8")),
     study=study,
     seconds=0.5,
 )

@@ -52,11 +52,6 @@ def measure() -> Iterator[Value]:
         yield Value(f"order of {scheme}", 1.9, float(np.log2(first / second)), 0.0, "at least")
 
 
-def picture() -> Picture:
-    """The strip when the load is largest."""
-    return Picture(solved("newmark", 50, fields=True), "U2")
-
-
 def study() -> Study:
     """Differences of successive numbers of increments."""
     counts = (25, 50, 100, 200, 400)
@@ -76,7 +71,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="0.1 below two on the finest pair",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(solved("newmark", 50, fields=True), "U2"),
     study=study,
     seconds=4.0,
 )

@@ -50,11 +50,6 @@ def measure() -> Iterator[Value]:
     yield Value("linear momentum that HHT loses", 0.0, lost["momentum x"], 1e-9, "absolute")
 
 
-def picture() -> Picture:
-    """The block at the end."""
-    return Picture(flown("block", "Q4I"), "MISES")
-
-
 def curve() -> Curve:
     """Angular momentum of the block over that after the pulse, less one."""
     series = {}
@@ -72,7 +67,7 @@ PROBLEM = Problem(
     certainty="analytic",
     why="Newton's tolerance of 1e-11 over 250 increments",
     measure=measure,
-    picture=picture,
+    picture=lambda: Picture(flown("block", "Q4I"), "MISES"),
     curve=curve,
     seconds=3.0,
 )
