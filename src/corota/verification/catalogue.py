@@ -130,7 +130,11 @@ class Picture:
 
 @dataclass
 class Problem:
-    """A problem with a known answer; its module's docstring describes it.
+    """A problem with a known answer.
+
+    Its module's docstring describes it; the module's function ``measure`` gives the values, in
+    seconds, not minutes. Functions ``curve`` and ``study`` are for the pages, where there are any;
+    a study may take longer.
 
     Parameters
     ----------
@@ -143,10 +147,8 @@ class Problem:
         ``converged here`` on finer meshes, which shows consistency and no more.
     why : str
         Reason of the tolerances.
-    measure : callable
-        Gives the values; seconds, not minutes.
-    picture, curve, study : callable, optional
-        For the pages; `study` may take longer.
+    picture : callable, optional
+        For the pages.
     seconds : float
         About how long `measure` takes on one core; long ones are started first.
     """
@@ -156,13 +158,13 @@ class Problem:
     source: str
     certainty: Certainty
     why: str
-    measure: Callable[[], Iterable[Value]]
     picture: Callable[[], Picture] | None = None
-    curve: Callable[[], Curve] | None = None
-    study: Callable[[], Study] | None = None
     seconds: float = 1.0
-    name: str = ""
-    description: str = ""
+    name: str = field(default="", init=False)
+    description: str = field(default="", init=False)
+    measure: Callable[[], Iterable[Value]] = field(init=False)
+    curve: Callable[[], Curve] | None = field(default=None, init=False)
+    study: Callable[[], Study] | None = field(default=None, init=False)
 
 
 @cache
@@ -175,6 +177,9 @@ def problems() -> dict[str, Problem]:
         problem: Problem = module.PROBLEM
         problem.name = info.name
         problem.description = cleandoc(module.__doc__ or problem.title)
+        problem.measure = module.measure
+        problem.curve = getattr(module, "curve", None)
+        problem.study = getattr(module, "study", None)
         found.append(problem)
     found.sort(key=lambda p: (GROUPS.index(p.group), p.name))
     return {p.name: p for p in found}

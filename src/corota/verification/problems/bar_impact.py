@@ -87,9 +87,6 @@ PROBLEM = Problem(
     "section 168",
     certainty="analytic",
     why="1 % with 200 cells, twice that with 100: the wave fronts spread over several cells",
-    measure=measure,
     picture=lambda: Picture(bar("Q4I", 20)),
-    curve=curve,
-    study=study,
     seconds=12.0,
 )

@@ -64,6 +64,5 @@ PROBLEM = Problem(
     certainty="analytic",
     why="shear and rotary inertia take 0.1 % of the third number at this depth; drilling elements "
     "are a little soft on regular meshes",
-    measure=measure,
     seconds=1.0,
 )

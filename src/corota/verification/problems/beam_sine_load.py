@@ -145,9 +145,6 @@ PROBLEM = Problem(
     source="modes of the Euler-Bernoulli beam; data of a published example of beam vibration",
     certainty="analytic",
     why="phase error of 800 increments, modes above the twelfth, shear and rotary inertia",
-    measure=measure,
     picture=picture,
-    curve=curve,
-    study=study,
     seconds=2.0,
 )

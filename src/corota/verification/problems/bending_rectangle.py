@@ -60,6 +60,5 @@ PROBLEM = Problem(
     "independent implementation",
     certainty="computed independently",
     why="rounding where exact, otherwise the printed digits",
-    measure=measure,
     seconds=0.1,
 )

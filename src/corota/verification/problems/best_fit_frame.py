@@ -78,8 +78,6 @@ PROBLEM = Problem(
     source="least squares over the nodes; values in agreement with an independent computation",
     certainty="analytic",
     why="rounding",
-    measure=measure,
     picture=lambda: Picture(sheared("Q4", 4.0), "U1"),
-    curve=curve,
     seconds=0.2,
 )

@@ -130,9 +130,6 @@ PROBLEM = Problem(
     "path by beams",
     certainty="converged here",
     why="the motion is followed through six swings, over which the phase errors of 32 cells add up",
-    measure=measure,
     picture=picture,
-    curve=curve,
-    study=study,
     seconds=6.0,
 )

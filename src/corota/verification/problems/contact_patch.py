@@ -111,7 +111,6 @@ PROBLEM = Problem(
     source="R. L. Taylor, P. Papadopoulos, in Computational Plasticity (1991)",
     certainty="analytic",
     why="rounding",
-    measure=measure,
     picture=lambda: Picture(solved("Q4I", "T6", nlgeom=False), "U2", 20.0),
     seconds=2.0,
 )

@@ -67,8 +67,6 @@ PROBLEM = Problem(
     certainty="computed independently",
     why="shear and extension at this depth lower the load by half a thousandth; the second limit "
     "load is a small difference",
-    measure=measure,
     picture=lambda: Picture(solved(fields=True)[0], "S11"),
-    curve=curve,
     seconds=2.5,
 )

@@ -156,8 +156,6 @@ PROBLEM = Problem(
     "Numer. Meth. Engng 17 (1981)",
     certainty="analytic",
     why="60 straight beams for the curve; the solid's depth of a hundredth, as for the elastica",
-    measure=measure,
     picture=lambda: Picture(solved("Q8", -1.0, fields=True)[0], "S11"),
-    curve=curve,
     seconds=1.0,
 )

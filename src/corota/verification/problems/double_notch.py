@@ -72,8 +72,6 @@ PROBLEM = Problem(
     source="J. C. Nagtegaal, D. M. Parks, J. R. Rice, Comput. Methods Appl. Mech. Engrg 4 (1974)",
     certainty="analytic",
     why="one percent on eight cells across the ligament, approached from above with the mesh",
-    measure=measure,
     picture=lambda: Picture(solved("Q8R", False, 8, 0.2, fields=True)[0], "PEEQ"),
-    curve=curve,
     seconds=6.0,
 )

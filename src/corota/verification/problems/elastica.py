@@ -116,9 +116,6 @@ PROBLEM = Problem(
     source="elliptic integrals; K. Mattiasson, Int. J. Numer. Meth. Engng 17 (1981), agrees",
     certainty="analytic",
     why="shear and extension at a depth of a hundredth of the length, and the mesh",
-    measure=measure,
     picture=lambda: Picture(solved("Q8", 50, 1, fields=True), "U2"),
-    curve=curve,
-    study=study,
     seconds=2.1,
 )

@@ -97,8 +97,6 @@ PROBLEM = Problem(
     certainty="published",
     why="half a percent on the stated mesh, where stresses at an edge are extrapolated from the "
     "points inside; one percent for Q4D, whose stresses converge from above and more slowly",
-    measure=measure,
     picture=lambda: Picture(solved("Q8", 16, 10), "S22", 200.0),
-    study=study,
     seconds=1.6,
 )

@@ -94,9 +94,6 @@ PROBLEM = Problem(
     source="H. Hertz (1882)",
     certainty="analytic",
     why="about nine cells are in contact; pressures at nodes alternate about the ellipse",
-    measure=measure,
     picture=lambda: Picture(solved("Q4I", 48), "MISES"),
-    curve=curve,
-    study=study,
     seconds=2.0,
 )

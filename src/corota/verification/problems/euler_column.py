@@ -108,9 +108,6 @@ PROBLEM = Problem(
     certainty="analytic",
     why="shear and shortening of a column whose depth is a fiftieth of its length; drilling "
     "elements are a little soft on regular meshes",
-    measure=measure,
     picture=lambda: Picture(solved(fields=True)[0], "S11"),
-    curve=curve,
-    study=study,
     seconds=0.4,
 )

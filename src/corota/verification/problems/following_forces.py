@@ -164,8 +164,6 @@ PROBLEM = Problem(
     certainty="published",
     why="the columns are solids of slenderness 40 with shear and rotary inertia, and coarse; loads "
     "are bracketed to 0.1 %",
-    measure=measure,
     picture=lambda: Picture(column("Q8", 16)),
-    curve=curve,
     seconds=6.0,
 )

@@ -89,8 +89,6 @@ PROBLEM = Problem(
     "truss the derivative of its load by its height",
     certainty="computed independently",
     why="chords of the elements stand for the curve: an error of the square of their length",
-    measure=measure,
     picture=lambda: Picture(solved("Lee's frame")[0], "M1"),
-    curve=curve,
     seconds=8.0,
 )

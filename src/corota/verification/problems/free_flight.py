@@ -83,8 +83,6 @@ PROBLEM = Problem(
     source="conservation laws; J. C. Simo, N. Tarnow, Z. Angew. Math. Phys. 43 (1992)",
     certainty="analytic",
     why="rounding and Newton's tolerance of 1e-11",
-    measure=measure,
     picture=lambda: Picture(solved("Q4I", fields=True), "MISES"),
-    curve=curve,
     seconds=4.0,
 )

@@ -133,8 +133,6 @@ PROBLEM = Problem(
     source="laws of momentum; data: J. C. Simo, L. Vu-Quoc, J. Appl. Mech. 53 (1986)",
     certainty="analytic",
     why="Newton's tolerance of 1e-11 over 400 increments",
-    measure=measure,
     picture=picture,
-    curve=curve,
     seconds=3.0,
 )

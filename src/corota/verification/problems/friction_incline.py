@@ -96,7 +96,6 @@ PROBLEM = Problem(
     source="C. A. Coulomb (1785)",
     certainty="analytic",
     why="rounding; the dragged block's surface is bent a little by the pressure",
-    measure=measure,
     picture=lambda: Picture(dragged(fields=True), "S22"),
     seconds=0.5,
 )

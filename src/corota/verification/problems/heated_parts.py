@@ -134,8 +134,6 @@ PROBLEM = Problem(
     "J. Opt. Soc. Am. 11 (1925)",
     certainty="analytic",
     why="rounding; for the strip its ends and the mesh, for the column shear and shortening",
-    measure=measure,
     picture=lambda: Picture(strip(fields=True), "S11"),
-    curve=curve,
     seconds=1.0,
 )

@@ -129,9 +129,6 @@ PROBLEM = Problem(
     certainty="analytic",
     why="Hertz assumes a half space: in the quarter disc the shear stress below is 2.5 % lower, "
     "also on finer meshes; stresses at nodes are averages",
-    measure=measure,
     picture=lambda: Picture(solved("strain", "Q4I", 48), "MISES"),
-    curve=curve,
-    study=study,
     seconds=0.8,
 )

@@ -120,9 +120,6 @@ PROBLEM = Problem(
     source="symmetry, Coulomb's law, balance of forces and energy",
     certainty="analytic",
     why="the ends of the block; the work is summed by trapezoids over the increments",
-    measure=measure,
     picture=picture,
-    curve=curve,
-    study=study,
     seconds=1.5,
 )

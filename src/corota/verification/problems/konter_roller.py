@@ -144,9 +144,6 @@ PROBLEM = Problem(
     source="H. Hertz (1882); geometry of A. W. A. Konter's benchmark, from memory; NLGEOM off",
     certainty="analytic",
     why="Hertz's bodies are half spaces; the contact is an eighth of the radius wide",
-    measure=measure,
     picture=lambda: Picture(roller(20, "Q8R", fields=True), "MISES"),
-    curve=curve,
-    study=study,
     seconds=4.0,
 )

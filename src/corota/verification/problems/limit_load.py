@@ -122,9 +122,6 @@ PROBLEM = Problem(
     source="W. Prager, P. G. Hodge, Theory of Perfectly Plastic Solids (1951)",
     certainty="analytic",
     why="bounds of the clamped hinge; a slender bar within 1 % of the formula, which has no shear",
-    measure=measure,
     picture=lambda: Picture(solved("10 x 1", "Q4I", 8), "PEEQ"),
-    curve=curve,
-    study=study,
     seconds=1.0,
 )

@@ -163,7 +163,5 @@ PROBLEM = Problem(
     "chapter 5",
     certainty="analytic",
     why="0.05 (0.1 for quadratic elements) below the theory on the finest pair",
-    measure=measure,
-    study=study,
     seconds=2.0,
 )

@@ -65,6 +65,5 @@ PROBLEM = Problem(
     source="quadratic convergence of Newton's method with the exact tangent",
     certainty="analytic",
     why="0.2 below two, measured where corrections are small and above rounding",
-    measure=measure,
     seconds=2.5,
 )

@@ -105,6 +105,5 @@ PROBLEM = Problem(
     source="rigid motion changes no strain",
     certainty="analytic",
     why="rounding; internal forces are small differences of the stiffness times positions",
-    measure=measure,
     seconds=1.0,
 )

@@ -95,8 +95,6 @@ PROBLEM = Problem(
     "(benchmarks/README.md)",
     certainty="computed independently",
     why="half of the last digit printed",
-    measure=measure,
     picture=lambda: Picture(bent(4, fields=True)[0], "S11"),
-    curve=curve,
     seconds=1.0,
 )

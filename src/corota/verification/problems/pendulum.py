@@ -130,9 +130,6 @@ PROBLEM = Problem(
     source="complete elliptic integral of the physical pendulum",
     certainty="analytic",
     why="flexibility of the rod and 200 increments a period",
-    measure=measure,
     picture=lambda: Picture(swing("Q4D", 0.2, fields=True), "U2"),
-    curve=curve,
-    study=study,
     seconds=6.0,
 )

@@ -113,9 +113,6 @@ PROBLEM = Problem(
     source="theorems of limit analysis; CalculiX 2.20 for the force with hardening",
     certainty="computed independently",
     why="from above with the mesh; a layer of bricks with another strain is half a percent stiffer",
-    measure=measure,
     picture=lambda: Picture(limit("Q8R", 12), "PEEQ"),
-    curve=curve,
-    study=study,
     seconds=2.0,
 )

@@ -121,8 +121,6 @@ PROBLEM = Problem(
     source="W. Prager, P. G. Hodge, Theory of Perfectly Plastic Solids (1951)",
     certainty="analytic",
     why="ten layers with three points each across the depth; loops are exact",
-    measure=measure,
     picture=lambda: Picture(cantilever(1.45, fields=True)[0], "PEEQ"),
-    curve=curve,
     seconds=1.0,
 )

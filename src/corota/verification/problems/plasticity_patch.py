@@ -125,7 +125,5 @@ PROBLEM = Problem(
     "integration",
     certainty="analytic",
     why="a thousandth of a megapascal at 4000 increments a step; patches: Newton's tolerance",
-    measure=measure,
-    curve=curve,
     seconds=0.8,
 )

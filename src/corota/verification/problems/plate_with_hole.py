@@ -116,8 +116,6 @@ PROBLEM = Problem(
     certainty="analytic",
     why="stresses at the edge are extrapolated from points inside; Howland's series of 1930 "
     "is half a percent low",
-    measure=measure,
     picture=lambda: Picture(strip("Q8", 8), "S22", 0.0),
-    study=study,
     seconds=2.0,
 )

@@ -67,6 +67,5 @@ PROBLEM = Problem(
     "independently",
     certainty="computed independently",
     why="the last printed digit",
-    measure=measure,
     seconds=0.1,
 )

@@ -69,7 +69,6 @@ PROBLEM = Problem(
     source="mechanics of the rigid body",
     certainty="analytic",
     why="rounding",
-    measure=measure,
     picture=lambda: Picture(block("Q4D")),
     seconds=0.3,
 )

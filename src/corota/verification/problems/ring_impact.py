@@ -106,9 +106,6 @@ PROBLEM = Problem(
     source="balance of energy and momentum",
     certainty="analytic",
     why="yielding: plastic work uses the stress at the end of the increment, a first-order error",
-    measure=measure,
     picture=picture,
-    curve=curve,
-    study=study,
     seconds=7.0,
 )

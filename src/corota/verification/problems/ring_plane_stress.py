@@ -94,10 +94,8 @@ PROBLEM = Problem(
     source="A. Nadai, Theory of Flow and Fracture of Solids (1950)",
     certainty="analytic",
     why="the plastic front passes through cells of 1/12 of the width",
-    measure=measure,
     picture=lambda: Picture(
         ring("Q8", 12, "stress", perfect(0.3), nadai(FRONT)[0])[0], "PEEQ", 100.0
     ),
-    curve=curve,
     seconds=2.0,
 )

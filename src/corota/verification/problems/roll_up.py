@@ -92,9 +92,6 @@ PROBLEM = Problem(
     source="a bar of constant curvature; h / L = 0.01",
     certainty="analytic",
     why="membrane and bending of a depth of a hundredth of the length, and the mesh",
-    measure=measure,
     picture=lambda: Picture(solved("OPT", 100, 2, fields=True), "U1"),
-    curve=curve,
-    study=study,
     seconds=2.1,
 )

@@ -115,8 +115,6 @@ PROBLEM = Problem(
     source="statics; S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability (1961)",
     certainty="analytic",
     why="rounding; the column bends by a millionth",
-    measure=measure,
     picture=lambda: Picture(column(1.0, NUDGE)),
-    curve=curve,
     seconds=0.3,
 )

@@ -97,7 +97,6 @@ PROBLEM = Problem(
     "an independent implementation of each element",
     certainty="computed independently",
     why="the last digit of the rows",
-    measure=measure,
     picture=lambda: Picture(
         run(model("trapezoids", 0.1, "Q4D"), Static(nlgeom=False), fields=True), "S11"
     ),

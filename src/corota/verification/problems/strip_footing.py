@@ -115,9 +115,6 @@ PROBLEM = Problem(
     source="L. Prandtl (1920); R. Hill, The Mathematical Theory of Plasticity (1950), chapter IX",
     certainty="analytic",
     why="two percent from above on the stated meshes: the edge of the footing is a singular point",
-    measure=measure,
     picture=lambda: Picture(solved("Q8R", False, 12), "PEEQ"),
-    curve=curve,
-    study=study,
     seconds=2.0,
 )

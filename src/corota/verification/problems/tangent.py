@@ -50,6 +50,5 @@ PROBLEM = Problem(
     source="the definition of the tangent",
     certainty="analytic",
     why="central differences over 1e-6 leave some 1e-9 of rounding",
-    measure=measure,
     seconds=2.0,
 )

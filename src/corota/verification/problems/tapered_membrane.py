@@ -68,8 +68,6 @@ PROBLEM = Problem(
     source="F. Abbassian, D. J. Dawswell, N. C. Knowles, Free Vibration Benchmarks, NAFEMS (1987)",
     certainty="published",
     why="five digits of the source on quadratic meshes; 1 % on linear ones of this size",
-    measure=measure,
     picture=lambda: Picture(tapered("Q8")),
-    study=study,
     seconds=0.5,
 )

@@ -67,8 +67,6 @@ PROBLEM = Problem(
     source="an independent total-Lagrangian program for the same continuum, Q9 80 x 8",
     certainty="computed independently",
     why="the best-fit frame is the polar rotation only to second order in the strain",
-    measure=measure,
     picture=lambda: Picture(solved("Q8", 40, fields=True), "S11"),
-    study=study,
     seconds=0.8,
 )

@@ -111,8 +111,6 @@ PROBLEM = Problem(
     certainty="analytic",
     why="the plastic front passes through cells, which leaves 1 % on 12 cells; steel: converged "
     "values of another mesh",
-    measure=measure,
     picture=lambda: Picture(ring("Q8R", 12, "strain", perfect(0.3), 190.0)[0], "PEEQ", 100.0),
-    study=study,
     seconds=2.0,
 )

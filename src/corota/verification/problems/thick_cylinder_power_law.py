@@ -106,8 +106,6 @@ PROBLEM = Problem(
     certainty="analytic",
     why="the volume changes a little (nu = 0.4999), and the displacement grows with the n-th power "
     "of the pressure: an error of stress counts n times",
-    measure=measure,
     picture=picture,
-    study=study,
     seconds=4.0,
 )

@@ -70,8 +70,6 @@ PROBLEM = Problem(
     "(1993); J. C. Simo, N. Tarnow (1992)",
     certainty="analytic",
     why="0.1 below two on the finest pair",
-    measure=measure,
     picture=lambda: Picture(solved("newmark", 50, fields=True), "U2"),
-    study=study,
     seconds=4.0,
 )

@@ -66,8 +66,6 @@ PROBLEM = Problem(
     source="conservation laws; J. C. Simo, N. Tarnow, Z. Angew. Math. Phys. 43 (1992)",
     certainty="analytic",
     why="Newton's tolerance of 1e-11 over 250 increments",
-    measure=measure,
     picture=lambda: Picture(flown("block", "Q4I"), "MISES"),
-    curve=curve,
     seconds=3.0,
 )

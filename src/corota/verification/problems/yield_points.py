@@ -113,7 +113,5 @@ PROBLEM = Problem(
     source="R. von Mises (1913); R. Hill, The Mathematical Theory of Plasticity (1950)",
     certainty="analytic",
     why="rounding; the limit without strain across is approached exponentially",
-    measure=measure,
-    curve=curve,
     seconds=0.3,
 )
