@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 import pytest
 
-from corota.analysis.terms.contact.complementarity import lemke
+from corota.analysis.terms.contact.pivoting import lemke
 
 
 def enumerated(c, m):

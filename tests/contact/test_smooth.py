@@ -6,7 +6,7 @@ import pytest
 
 import corota as ct
 from corota import _core
-from corota.analysis.terms.contact.surface import Surface, smoothed
+from corota.analysis.terms.contact.setup import Surface, smoothed
 from corota.errors import InputError
 from corota.model.loads import Fixed
 

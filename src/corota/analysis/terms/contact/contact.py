@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 # Parts that models without contact do not need.
-check_side = lazy("corota.analysis.terms.contact.side:check_side")
+check_side = lazy("corota.analysis.terms.contact.tunneling:check_side")
 corner_note = lazy("corota.analysis.terms.contact.messages:corner_note")
 fillet_note = lazy("corota.analysis.terms.contact.messages:fillet_note")
 guided_round_note = lazy("corota.analysis.terms.contact.messages:guided_round_note")
@@ -53,7 +53,7 @@ what_gives_way = lazy("corota.analysis.terms.contact.messages:gives_way")
 partly_covered_note = lazy("corota.analysis.terms.contact.messages:partly_covered_note")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 near_side = lazy("corota.analysis.terms.contact.kinks:near_side")
-passed_through = lazy("corota.analysis.terms.contact.side:passed_through")
+passed_through = lazy("corota.analysis.terms.contact.tunneling:passed_through")
 sunk_between = lazy("corota.analysis.terms.contact.messages:sunk_between")
 sunk_corner = lazy("corota.analysis.terms.contact.messages:sunk_corner")
 

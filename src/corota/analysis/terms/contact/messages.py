@@ -10,8 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.gaps import SAME, WAITED, covered
-from corota.analysis.terms.contact.setup import core_of, of_lines
-from corota.analysis.terms.contact.surface import CORNER, NONE, blunt_turns, sharp_corners
+from corota.analysis.terms.contact.setup import (
+    CORNER,
+    NONE,
+    blunt_turns,
+    core_of,
+    of_lines,
+    sharp_corners,
+)
+from corota.analysis.terms.contact.tunneling import NAMED
 from corota.model.contact import ContactPair, RigidCurve
 
 if TYPE_CHECKING:
@@ -282,11 +289,6 @@ def _ends(pair: Pair, x: Floats) -> Floats:
     _, first, count = np.unique(place, axis=0, return_index=True, return_counts=True)
     alone: Floats = points[first[count == 1]]
     return alone
-
-
-#: Note alone: depth from which a penetration is reported [edges]; beyond `EDGES` it is on the far
-#: side of a body.
-NAMED = 0.1
 
 
 def sunk_corner(contact_term: ContactTerm) -> str:

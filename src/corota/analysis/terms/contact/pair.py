@@ -10,8 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import corota._core as _core
-from corota.analysis.terms.contact.discrete_gradient import discrete_gradient
-from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, SLIPPING, WAITED, Terms, covered
+from corota.analysis.terms.contact.gaps import (
+    CLOSED,
+    OPEN,
+    SAME,
+    SLIPPING,
+    WAITED,
+    Terms,
+    covered,
+    discrete_gradient,
+)
 from corota.analysis.terms.contact.setup import contact_core, tie_core
 from corota.arrays import distinct
 from corota.model.contact import METHODS, ContactPair, RigidCurve, Tie

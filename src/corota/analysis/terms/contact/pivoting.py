@@ -7,6 +7,10 @@ complementarity
 problem, are solved by pivoting (Lemke): every correction then satisfies all conditions to first
 order (the method of Josephy and Newton). Nothing is regularized.
 
+Linear complementarity problems by Lemke's method: R. W. Cottle, J.-S. Pang, R. E. Stone, *The
+Linear Complementarity Problem* (2009), ch. 4.4 and, for ties of the ratio test by lexicographic
+order, ch. 4.9.
+
 Sources: A. Klarbring, *A mathematical programming approach to three-dimensional contact problems
 with friction*, Comput. Methods Appl. Mech. Engrg. 58 (1986); N. H. Josephy, *Newton's method for
 generalized equations*, MRC report 1965 (1979).
@@ -20,22 +24,97 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.complementarity import lemke
 from corota.analysis.terms.contact.gaps import SAME, covered
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
+from corota.analysis.terms.contact.problem import RightHandSides
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.terms.contact.problem import ContactProblem, RightHandSides
+    from corota.analysis.terms.contact.problem import ContactProblem
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
     #: Correction of dofs and multipliers, its states, signs of slipping tractions.
     Found = tuple[Floats, States, list[Floats]]
+
+#: Rounding bounds of Lemke's method: relative size of a pivot that is zero, and difference of
+#: ratios that tie.
+ZERO, TIE = 1e-11, 1e-10
+
+
+def lemke(c: Floats, m: Floats) -> tuple[Floats, NDArray[np.bool_]] | None:
+    """Solve ``y = c + m x, x >= 0, y >= 0, x y = 0``.
+
+    Parameters
+    ----------
+    c : ndarray, shape (n,)
+    m : ndarray, shape (n, n)
+        Rows and columns of like size.
+
+    Returns
+    -------
+    x : ndarray, shape (n,)
+    basic : ndarray of bool, shape (n,)
+        Which x are in the basis at the end; their y are zero.
+    None
+        If the method ends on a ray: there is no solution, or it cannot find one.
+    """
+    n = len(c)
+    basic = np.zeros(n, bool)
+    if n == 0 or c.min() >= 0.0:
+        return np.zeros(n), basic
+    # Columns: y (n), x (n), the artificial variable, right-hand side: y - m x - d t = c.
+    table = np.concatenate([np.eye(n), -m, -np.ones((n, 1)), c[:, None]], axis=1)
+    base = np.arange(n)
+    row = int(np.argmin(c))
+    entering = 2 * n
+    seen: set[bytes] = set()
+    while (now := base.tobytes()) not in seen:  # no basis comes twice, but by rounding
+        seen.add(now)
+        leaving = int(base[row])
+        pivot = table[row] / table[row, entering]
+        column = table[:, entering].copy()
+        column[row] = 0.0
+        table -= np.outer(column, pivot)
+        table[row] = pivot
+        base[row] = entering
+        if leaving == 2 * n:
+            x = np.zeros(n)
+            inside = (base >= n) & (base < 2 * n)
+            x[base[inside] - n] = table[inside, -1]
+            basic[base[inside] - n] = True
+            return np.maximum(x, 0.0), basic
+        entering = leaving + n if leaving < n else leaving - n
+        column = table[:, entering]
+        able = np.flatnonzero(column > ZERO * max(1.0, float(np.abs(column).max())))
+        if not len(able):
+            return None
+        row = _leaving(table, column, able, base, n)
+    return None
+
+
+def _leaving(
+    table: Floats, column: Floats, able: NDArray[np.int64], base: NDArray[np.int64], n: int
+) -> int:
+    """Row that leaves the basis; of ties the artificial variable, then the lexicographic least."""
+    ratio = np.maximum(table[able, -1], 0.0) / column[able]
+    size = max(float(np.abs(table[:, -1]).max()) / max(float(np.abs(column).max()), 1e-300), 1e-300)
+    tied = able[ratio <= ratio.min() + TIE * min(size, max(float(ratio.min()), 1e-4 * size))]
+    final = np.flatnonzero(base[tied] == 2 * n)
+    if len(final):
+        return int(tied[final[0]])
+    for k in range(n):
+        if len(tied) == 1:
+            break
+        other = table[tied, k] / column[tied]
+        tied = tied[other <= other.min() + TIE * max(1.0, float(np.abs(other).max()))]
+    # Of rows that are equal to rounding, the one with the largest pivot.
+    return int(tied[np.argmax(column[tied])])
+
 
 #: Size of the linear complementarity problem: most constraints (its cost grows with the cube); a
 #: tenth of them may be open ones from the start.
@@ -167,19 +246,28 @@ class Pivoting:
     def _with(self, base: States, chosen: list[Chosen]) -> Found | None:
         """Solution from one basis."""
         problem, n = self.problem, self.problem.n
-        slip_directions = [
-            np.where(q > 0.0, 1.0, -1.0) if pair.rubs else np.ones(pair.n)
-            for pair, _, (p, q) in self.pairs
-        ]
+        slip_directions = [np.ones(pair.n) for pair, _, _ in self.pairs]
         for k, (pair, terms, (_, q)) in enumerate(self.pairs):
             if pair.rubs:
-                # Sticking constraints would slip against their trial traction.
-                own = pair.slip_direction(terms, q)
-                slip_directions[k] = np.where(base[k] == SLIPPING, slip_directions[k], own)
-                zero = (q == 0.0) & (base[k] == SLIPPING)
-                slip_directions[k] = np.where(zero, own, slip_directions[k])
+                # What sticks would slip against its trial traction.
+                slips = (base[k] == SLIPPING) & (q != 0.0)
+                slip_directions[k] = np.where(slips, np.sign(q), pair.slip_direction(terms, q))
+        problem.slip_directions = {
+            p.first: s for p, s in zip(problem.term.pairs, slip_directions, strict=True)
+        }
         force, rows = self._inputs(base, chosen, slip_directions)
-        du, dp = responses(problem, self.at, base, slip_directions, self.right_sides, force, rows)
+        one = self.right_sides
+        none = np.zeros_like(force)
+        du, dp, _ = problem.solve(
+            self.at,
+            base,
+            RightHandSides(
+                np.column_stack([one.force, *(problem.system.at_nodes(f) for f in force.T)]),
+                np.column_stack([one.constrained, none]),
+                np.append(one.own, none[0]),
+                np.column_stack([np.zeros(len(rows)), rows]),
+            ),
+        )
         values = [self._values(base, c, slip_directions[c.k], du, dp) for c in chosen]
         return self._pivoted(base, chosen, slip_directions, values, du, dp, n)
 
@@ -408,32 +496,4 @@ def _small(problem: ContactProblem) -> float:
     return SAME * max(scales.force, scales.zero_force)
 
 
-def responses(
-    problem: ContactProblem,
-    at: Evaluation,
-    states: States,
-    slip_directions: list[Floats],
-    right_sides: RightHandSides,
-    force: Floats,
-    rows: Floats,
-) -> tuple[Floats, Floats]:
-    """Solutions for the first right-hand side, and for forces and rows of inputs."""
-    system = problem.system
-    problem.slip_directions = {
-        p.first: s for p, s in zip(problem.term.pairs, slip_directions, strict=True)
-    }
-    coupling, own, _, _ = problem.coupling(at.contact_state, states)
-    columns = [right_sides.force[:, 0] + system.at_nodes(coupling.force)]
-    columns += [system.at_nodes(f) for f in force.T]
-    constrained = np.zeros((problem.n, len(columns)))
-    constrained[:, 0] = right_sides.constrained[:, 0]
-    both = np.column_stack([right_sides.own[0] * own, rows])
-    release = np.zeros_like(both)
-    release[:, 0] = -right_sides.own[0] * at.contact_state.multipliers
-    du, dp, _ = problem.border.solve(
-        at, coupling, np.column_stack(columns), both, release, constrained
-    )
-    return du, dp
-
-
-__all__ = ["pivoted"]
+__all__ = ["lemke", "pivoted"]

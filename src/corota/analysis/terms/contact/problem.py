@@ -27,7 +27,6 @@ from corota.analysis.terms.contact.gaps import (
     SLIPPING,
     WAITED,
 )
-from corota.analysis.terms.contact.linearization import linearized, stacked
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -38,13 +37,13 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.gaps import ContactState, Kink, Terms
-    from corota.analysis.terms.contact.linearization import Linearized
     from corota.analysis.terms.contact.pair import Pair
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
     Each = tuple[Pair, Terms, tuple[Floats, Floats]]
+    Linearized = tuple[Coupling, Floats, int, list[tuple[Floats, Floats]]]
 
 #: Merit of a correction: fraction of the friction bound from which it is repeated with slip.
 FRICTION_EXCESS = 2.0
@@ -63,11 +62,14 @@ class RightHandSides:
         Of equilibrium, and prescribed changes at constrained dofs.
     own : ndarray, shape (k,)
         Share of the contact residual: 1 in a Newton correction, 0 in a rate.
+    rows : ndarray, shape (n_multipliers, k), or None
+        Added to the rows of the multipliers.
     """
 
     force: Floats
     constrained: Floats
     own: Floats
+    rows: Floats | None = None
 
 
 class ContactProblem:
@@ -78,39 +80,6 @@ class ContactProblem:
     system : System
     rule : Rule
         What the increment makes of its unknowns.
-
-    Attributes
-    ----------
-    n : int
-        Dofs.
-    last : list of ndarray or None
-        States of the last correction.
-    seen : dict of bytes to int
-        How often a set of states came back.
-    slip_directions : dict of int to ndarray
-        Of slipping tractions, by the pair's first multiplier.
-    flips : list of ndarray
-        How often the state of each constraint has changed.
-    sliding, pivoted, corrections : int
-        Bodies that slid, corrections by pivoting, and all corrections so far.
-    size, least : float
-        Residual of the last iterate, and the least one so far.
-    waited : int
-        Iterations without progress.
-    pivoting : bool
-        Whether states come from the whole linearized problem.
-    loose : str
-        Bodies that were unconstrained until contact was closed.
-    kink : Kink or None
-        Kink of the contact surfaces at which the bodies may rest.
-    kinks, beyond : int
-        Kinks tried, and corrections in which one carried more than its jump.
-    origin : ndarray
-        Displacements that the attempt begins with.
-    places : list of ndarray
-        Displacements of the last three evaluations.
-    stage : str
-        How the last correction was found.
     """
 
     #: Whether corrections are bounded by something else: none is too long, or slips at once.
@@ -128,32 +97,39 @@ class ContactProblem:
 
     def forget(self) -> None:
         """Begin an attempt at the increment."""
-        # Closed constraints stay closed while their pressure does.
+        #: States of the last correction. Closed constraints stay closed while their pressure does.
         self.last: States | None = None
         if self.term.at is not None and self.term.at.states:
             self.last = [s.copy() for s in self.term.at.states]
+        #: How often a set of states came back, and how often that of each constraint changed.
         self.seen: dict[bytes, int] = {}
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.term.pairs]
+        #: Times that bodies slid, all corrections, and those by pivoting.
         self.sliding = self.corrections = self.pivoted = 0
+        #: Whether states come from the whole linearized problem.
         self.pivoting = False
+        #: Residual of the last iterate, the least one, and iterations without progress.
         self.size, self.least, self.waited = np.inf, np.inf, 0
-        self.stage = ""  # how the last correction was found
-        self.relaxing = False  # whether the bodies may move to another equilibrium
-        #: Previous position in relaxation, for the tunneling check.
+        #: How the last correction was found.
+        self.stage = ""
+        #: Whether the bodies may move to another equilibrium, and from where they do.
+        self.relaxing = False
         self.since: Floats | None = None
         self.term.springs = None
-        #: Kink of the contact surfaces at which the bodies may rest, and how often one
-        #: was tried.
+        #: Kink of the contact surfaces at which the bodies may rest; how many were tried, and
+        #: corrections in which one carried more than its jump.
         self.kink: Kink | None = None
         self.kinks = self.beyond = 0
         #: Whether the kink is that of the committed state, which may lie behind by now.
         self.inherits = False
-        self.places: list[Floats] = []  # displacements of the last three evaluations
-        self.first_move = 0.0  # of the first correction [length]
-        self.loose = ""  # bodies that were unconstrained until contact was closed
-        self.slip_directions: dict[
-            int, Floats
-        ] = {}  # of slipping tractions, by the pair's first multiplier
+        #: Displacements of the last three evaluations.
+        self.places: list[Floats] = []
+        #: Length of the first correction.
+        self.first_move = 0.0
+        #: Bodies that were unconstrained until contact was closed.
+        self.loose = ""
+        #: Signs of slipping tractions, by the pair's first multiplier.
+        self.slip_directions: dict[int, Floats] = {}
 
     def go_on(self) -> None:
         """Begin again at the equilibrium that was found, with its states."""
@@ -200,6 +176,8 @@ class ContactProblem:
         coupling, own, expected, slopes = self.coupling(at.contact_state, states)
         force = right_sides.force + self.system.at_nodes(coupling.force)[:, None] * right_sides.own
         rows = own[:, None] * right_sides.own
+        if right_sides.rows is not None:
+            rows = rows + right_sides.rows
         release = -at.contact_state.multipliers[:, None] * right_sides.own
         du, dp, negative = self.border.solve(
             at, coupling, force, rows, release, right_sides.constrained
@@ -449,6 +427,164 @@ class ContactProblem:
                 error.mode,
             ) from None
         raise error
+
+
+def linearized(
+    term: ContactTerm, at: ContactState, states: States, slip_directions: dict[int, Floats]
+) -> Linearized:
+    """The border for states, its right-hand side, and its negative pivots.
+
+    Behind these, of each pair: the slopes of slipping tractions over the pressure and their
+    tractions at no pressure, shapes (n,).
+
+    Parameters
+    ----------
+    slip_directions : dict of int to ndarray
+        Signs of slipping tractions, by the pair's first multiplier.
+    """
+    geometric_stiffness, skew, rows, follow, slopes = [], [], [], [], []
+    diagonal, rhs = np.ones(term.n), np.zeros(term.n)
+    force = np.zeros(term.system.n_dofs)
+    expected = 0
+    parts = term.parts(at.multipliers)
+    for pair, terms, (p, q), state in zip(term.pairs, at.terms, parts, states, strict=True):
+        first, second, end = pair.first, pair.first + pair.n, pair.first + pair.width
+        dp, rp, dq, rq, ratio, level = pair.rows(terms, state, p, q, slip_directions[first])
+        slopes.append((ratio, level))
+        closed, sticks, share = state != OPEN, state == CLOSED, term.share(pair)
+        diagonal[first:second], rhs[first:second] = share * dp, share * rp
+        expected += int(closed.sum())
+        acting = terms.acting
+        to_rows = term.dofs(terms.variables)
+        to_acting = to_rows if acting is terms else term.dofs(acting.variables)
+
+        def columns(
+            name: str,
+            start: int,
+            chosen: NDArray[np.bool_],
+            share: float = 1.0,
+            both: tuple[Terms, Terms] = (terms, acting),
+            dofs: tuple[Ints, Ints] = (to_rows, to_acting),
+        ) -> None:
+            """A gradient at the end in rows and columns; forces may act along another."""
+            k, own = both[0].constraint, share * getattr(both[0], name)
+            rows.append(border(dofs[0], start + k, -own, chosen[k]))
+            if both[1] is not both[0]:
+                follow.append(border(dofs[0], start + k, own, chosen[k]))
+                k, own = both[1].constraint, share * getattr(both[1], name)
+                follow.append(border(dofs[1], start + k, -own, chosen[k]))
+
+        columns("gap_gradient", first, closed, share)
+        # Tractions that are known after the correction go to the right-hand side.
+        known, shear = np.where(closed, 0.0, -share * p), np.zeros(pair.n)
+        if pair.two:
+            diagonal[second:end], rhs[second:end] = dq, rq
+            expected += int(sticks.sum())
+            columns("slip_gradient", second, sticks)
+            shear = np.where(sticks, 0.0, ratio * p + level - q)
+            k = acting.constraint
+            slope = -ratio[k, None] * acting.slip_gradient
+            follow.append(border(to_acting, first + k, slope, state[k] == SLIPPING))
+        pair.add_forces(acting, to_acting, known, shear, force, None)
+        if pair.active and term.system.nlgeom and (p.any() or q.any()):
+            # Half way an end moves by half.
+            half = 1.0 if acting is terms else 0.5
+            even, odd = second_derivatives(term, pair, half * share * p, half * q)
+            geometric_stiffness.append(even)
+            skew.append(odd)
+
+    # Where all stick, nothing moves along the tractions, which take the skew part up: without it
+    # the matrix is symmetric, and its inertia known.
+    slips = any(bool((state == SLIPPING).any()) for state in states)
+
+    def near() -> tuple[Ints, Ints]:
+        each = zip(term.pairs, at.terms, strict=True)
+        return stacked([_near(term, pair, terms) for pair, terms in each])
+
+    coupling = Coupling(
+        Triplets.join(geometric_stiffness),
+        Triplets.join(skew if slips else []),
+        Triplets.join(rows),
+        Triplets.join(follow),
+        diagonal,
+        force,
+        near,
+    )
+    return coupling, rhs, expected, slopes
+
+
+def second_derivatives(
+    term: ContactTerm, pair: Pair, p: Floats, q: Floats
+) -> tuple[Triplets, Triplets]:
+    """Geometric stiffness: derivatives of the directions of the tractions.
+
+    Returns
+    -------
+    even, odd : Triplets
+        Symmetric part, and the skew part that friction has.
+    """
+    with term.system.timed("contact"):
+        _, variables, values = pair.core.hessian(p[pair.owner], q[pair.owner])
+    where = term.dofs(variables)
+    v = where.shape[1]
+    a, b = np.repeat(where, v, axis=1).ravel(), np.repeat(where, v, axis=0).ravel()
+    inside = (a >= 0) & (b >= 0)
+
+    def entries(part: Floats) -> Triplets:
+        flat = -part.reshape(-1)
+        return Triplets(a, b, flat).keep(inside & (flat != 0.0))
+
+    if not pair.rubs or not q.any():
+        return entries(values), Triplets.join([])
+    turned = values.transpose(0, 2, 1)
+    return entries(0.5 * (values + turned)), entries(0.5 * (values - turned))
+
+
+def _near(term: ContactTerm, pair: Pair, terms: Terms) -> tuple[Ints, Ints]:
+    """Dofs and multipliers of candidate pairs next to closed ones."""
+    none = np.zeros((0, 0), np.int64)
+    if not term.system.nlgeom:
+        return none, none
+    variables, constraints = pair.core.pattern()
+    found = pair.core.candidates()
+    used = np.zeros(len(found), bool)
+    used[terms.pair] = True
+    if not used.any():
+        return none, none
+    width = int(found[:, 1].max()) + 8
+    key = found[:, 0] * width + found[:, 1] + 3
+    keys = np.sort(key[used])
+    next_up = np.minimum(np.searchsorted(keys, key - 2), len(keys) - 1)
+    close = np.abs(keys[next_up] - key) <= 2
+    variables, constraints = variables[close], constraints[close]
+    own = np.where(constraints >= 0, pair.first + pair.owner[constraints], -1)
+    if pair.two:
+        own = np.concatenate([own, np.where(own >= 0, own + pair.n, -1)], axis=1)
+    return term.dofs(variables), own
+
+
+def border(where: Ints, column: Ints, gradient: Floats, rows: NDArray[np.bool_]) -> Triplets:
+    """Gradients of some terms as columns."""
+    where, gradient = where[rows], gradient[rows]
+    columns = np.repeat(column[rows], where.shape[1])
+    flat, values = where.ravel(), gradient.ravel()
+    keep = (flat >= 0) & (values != 0.0)
+    return Triplets(flat[keep], columns[keep], values[keep])
+
+
+def stacked(parts: list[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
+    """Rows of several pairs below each other, filled with -1."""
+    out = []
+    for which in (0, 1):
+        tables = [p[which] for p in parts if len(p[which])]
+        width = max((t.shape[1] for t in tables), default=0)
+        full = np.full((sum(len(t) for t in tables), width), -1, np.int64)
+        first = 0
+        for table in tables:
+            full[first : first + len(table), : table.shape[1]] = table
+            first += len(table)
+        out.append(full)
+    return out[0], out[1]
 
 
 def linearized_contact(

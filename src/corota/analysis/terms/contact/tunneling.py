@@ -1,8 +1,10 @@
-"""Nodes that passed through the opposite surface within one increment.
+"""Nodes on the wrong side: at the start, after an increment, and at the end of a run.
 
 The core searches no farther than its reach, and a penetration deeper than the body is no contact. A
 node that moved farther may be behind the opposite surface without contact, and one that moved
-across a body may be outside again on its other side; such an increment is refused.
+across a body may be outside again on its other side; such an increment is refused. A slave that
+starts behind a rigid curve is refused as well, and parts without a pair that went through are
+noted.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -14,14 +16,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, SLIPPING, covered
-from corota.model.contact import RigidCurve
+from corota.errors import ModelError
+from corota.mesh.parts import nodes_of_cells, part_of_nodes, parts_without
+from corota.model.contact import RigidCurve, edges_or_nodes
+from corota.results.rigid import rigid_curves, rigid_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
+    from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.contact.pair import Pair, Terms
+    from corota.model.model import Model
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -37,6 +44,8 @@ TOUCHES = 1e-8
 STRAIGHT = 0.1
 #: Nodes times pieces that are compared at once (memory alone).
 AT_ONCE = 1_000_000
+#: Note alone: depth from which a penetration is reported [edges].
+NAMED = 0.1
 
 
 def passed(
@@ -156,16 +165,14 @@ def other_side(pair: Pair, old: Floats, new: Floats) -> tuple[Floats, Floats, In
             pair.chords = _chords(master)
         pieces = pair.chords
         nodes = np.full((len(pieces), 2), -1, np.int64)
-        reference = master.reference
-        if reference is None or isinstance(reference, tuple):
+        node = master.reference
+        if not isinstance(node, int | np.integer):
             return pieces, pieces, nodes
-        at = pair.reference[int(reference)]
-        follows = np.array([1.0, 1.0, float(master.turns)])
-        return (
-            _carried(pieces, at, follows * old[int(reference)]),
-            _carried(pieces, at, follows * new[int(reference)]),
-            nodes,
+        first, last = (
+            _turned(pieces, master.turns * x[node, 2], pair.reference[node, :2], x[node, :2])
+            for x in (old, new)
         )
+        return first, last, nodes
     other = pair.slave if pair.master is None else pair.master
     nodes = other.nodes[:, :2]
     if other.two_sided:
@@ -175,23 +182,14 @@ def other_side(pair: Pair, old: Floats, new: Floats) -> tuple[Floats, Floats, In
 
 def _chords(curve: RigidCurve) -> Floats:
     """A curve as straight pieces, the rigid body on their left, shape (m, 2, 2)."""
-    out = []
-    for x0, y0, x1, y1, cx, cy, sweep in curve.backward.tolist():
-        if sweep == 0.0:
-            out.append([[x0, y0], [x1, y1]])
-            continue
-        radius, start = math.hypot(x0 - cx, y0 - cy), math.atan2(y0 - cy, x0 - cx)
-        angle = start + np.linspace(0.0, sweep, 1 + math.ceil(abs(sweep) / STRAIGHT))
-        points = np.column_stack([cx + radius * np.cos(angle), cy + radius * np.sin(angle)])
-        out += np.stack([points[:-1], points[1:]], axis=1).tolist()
-    return np.array(out)
+    lines = rigid_lines(curve)
+    return np.concatenate([np.stack([line[1:], line[:-1]], axis=1) for line in lines])
 
 
-def _carried(pieces: Floats, reference: Floats, at: Floats) -> Floats:
-    """Pieces moved with their reference node."""
-    c, s = math.cos(at[2]), math.sin(at[2])
-    turned = (pieces - reference[:2]) @ np.array([[c, s], [-s, c]])
-    return np.asarray(turned + at[:2])
+def _turned(x: Floats, turn: float, about: Floats, to: Floats) -> Floats:
+    """Points turned about one point by an angle and moved to another."""
+    c, s = math.cos(turn), math.sin(turn)
+    return np.asarray((x - about) @ np.array([[c, s], [-s, c]]) + to)
 
 
 def times_of_crossing(
@@ -270,4 +268,248 @@ def _beside(pieces: Floats, x: Floats) -> NDArray[np.bool_]:
     return np.asarray((along >= 0.0) & (along <= 1.0))
 
 
-__all__ = ["UNSEEN", "other_side", "outside", "passed", "times_of_crossing"]
+#: Check of data: cosine between the normals of slave and curve from which the slave faces away; as
+#: far on the other side it faces the curve, and between them neither.
+BACK = 0.2
+
+
+def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
+    """Refuse a slave surface whose body starts on the wrong side of a rigid curve.
+
+    The body may have its surface on the curve, or reach through it by less than half.
+
+    Parameters
+    ----------
+    system : NumberedModel
+    pair : Pair
+    x : ndarray, shape (n_nodes, 3)
+        Positions and rotations at the start.
+
+    Raises
+    ------
+    ModelError
+        Naming the pair, the curve and the nearest node.
+    """
+    curve = getattr(pair.item, "master", None)
+    if not isinstance(curve, RigidCurve) or not curve.turns:  # no curve, or a gap element
+        return
+    mesh = system.model.mesh
+    pieces = other_side(pair, x, x)[0]
+    if pair.slave.pointwise:
+        _check_points(system, pair, pieces, x[:, :2])
+        return
+    ends = x[pair.slave.nodes[:, :2], :2]
+    size = SAME * float(pair.slave.length.max())
+    distance, normal, inside = _signed(pieces, ends.mean(axis=1), size)
+    along = ends[:, 1] - ends[:, 0]
+    outward = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
+    turned = (outward * normal).sum(axis=1)
+    steep = np.abs(turned) < BACK
+    nearest = int(np.argmin(np.where(inside & ~steep, np.abs(distance), np.inf)))
+    if not inside[nearest] or turned[nearest] < BACK:
+        return
+    # The edge faces away: the body is behind, or in front with its back to the curve.
+    part = part_of_nodes(mesh)
+    body = np.isin(part, part[pair.slave.node_list])
+    behind, _, inside = _signed(pieces, x[body, :2], size)
+    if not inside.any() or behind[inside].max() >= -behind[inside].min():
+        return
+    _refuse(system, pair, int(pair.slave.nodes[nearest, 0]), -float(distance[nearest]), size)
+
+
+def _check_points(system: NumberedModel, pair: Pair, pieces: Floats, x: Floats) -> None:
+    """The same for a line or single nodes, which have no outer side of their own."""
+    nodes, size = pair.slave.node_list, SAME * float(pair.slave.length.max())
+    distance, _, inside = _signed(pieces, x[nodes], size)
+    nearest = int(np.argmin(np.where(inside, np.abs(distance), np.inf)))
+    if not inside[nearest] or distance[nearest] > size:
+        return
+    # Springs end where they will, on either side, and a node with springs alone has no side.
+    mesh, springs = system.model.mesh, np.zeros(system.model.mesh.n_cells, bool)
+    for block in system.blocks:
+        springs[block.cells] = block.section.element.startswith("SPRING")
+    if not np.isin(nodes, nodes_of_cells(mesh, np.flatnonzero(~springs))).any():
+        return
+    part = parts_without(mesh, springs)
+    body, _, inside = _signed(pieces, x[np.isin(part, part[nodes])], size)
+    # What lies on the curve as a whole tells no side.
+    if not inside.any() or body[inside].max() >= -body[inside].min() - size:
+        return
+    _refuse(system, pair, int(nodes[nearest]), -float(distance[nearest]), size)
+
+
+def _refuse(system: NumberedModel, pair: Pair, node: int, depth: float, size: float) -> None:
+    curve = pair.item.master
+    assert isinstance(curve, RigidCurve)
+    label = system.model.mesh.node_labels[node]
+    place = (
+        "on it"
+        if abs(depth) <= size
+        else f"{abs(depth):.4g} {'behind' if depth > 0 else 'through'} it"
+    )
+    name = f" {curve.name!r}" if curve.name else ""
+    raise ModelError(
+        f"contact pair {pair.item.name!r}: the slave surface starts on the wrong side of "
+        f"the rigid curve{name}: node {label} is nearest, {place}. "
+        "The deformable body belongs on the left of the curve's direction of travel; give its "
+        "points in the other order (corota plot draws the rigid body shaded)",
+        pair.item.where,
+    )
+
+
+def _signed(
+    pieces: Floats, points: Floats, same: float
+) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Signed distance to the nearest piece, positive in front, and the normal there.
+
+    The last part of the result is whether the nearest point lies on the curve, not at a free end.
+    """
+    start, along = pieces[:, 0], pieces[:, 1] - pieces[:, 0]
+    square = (along**2).sum(axis=1)
+    normals = np.column_stack([along[:, 1], -along[:, 0]]) / np.sqrt(square)[:, None]
+    first, last = _free_ends(pieces, same)
+    distance, best = np.empty(len(points)), np.empty(len(points), np.int64)
+    share = np.empty(len(points))
+    for own in _parts(len(points), len(pieces)):
+        away = points[own, None] - start
+        t = (away * along).sum(axis=2) / square
+        apart = away - np.clip(t, 0.0, 1.0)[:, :, None] * along
+        size = np.hypot(apart[:, :, 0], apart[:, :, 1])
+        height = (away * normals).sum(axis=2)
+        near = size <= size.min(axis=1, keepdims=True) + same
+        # At a corner the piece with the larger distance decides, as for a wedge.
+        k = np.where(near, np.abs(height), -1.0).argmax(axis=1)
+        rows = np.arange(len(k))
+        best[own], share[own] = k, t[rows, k]
+        distance[own] = np.copysign(size[rows, k], height[rows, k])
+    beyond = ((share < 0.0) & first[best]) | ((share > 1.0) & last[best])
+    return distance, normals[best], ~beyond
+
+
+def _free_ends(pieces: Floats, same: float) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Whether the first and last ends of pieces are free: no other end is there."""
+    joints = np.concatenate([pieces[:, 0], pieces[:, 1]])
+    free = np.empty(len(joints), bool)
+    for own in _parts(len(joints), len(joints)):
+        apart = joints[own, None] - joints
+        free[own] = (np.hypot(apart[:, :, 0], apart[:, :, 1]) <= same).sum(axis=1) == 1
+    return free[: len(pieces)], free[len(pieces) :]
+
+
+def _parts(rows: int, width: int) -> Iterator[slice]:
+    """Slices of rows of some width that are compared at once."""
+    count = max(1, AT_ONCE // max(width, 1))
+    return (slice(begin, begin + count) for begin in range(0, rows, count))
+
+
+def _depth(pieces: Floats, points: Floats) -> Floats:
+    """Depth of points behind a curve, 0 before it and beyond its ends [length]."""
+    distance, _, inside = _signed(pieces, points, SAME * float(np.ptp(pieces)))
+    return np.where(inside, np.maximum(-distance, 0.0), 0.0)
+
+
+def passed_through(model: Model, u: Floats) -> list[str]:
+    """Notes on parts of bodies in no pair that lie behind a rigid curve or in another body.
+
+    Parameters
+    ----------
+    model : Model
+    u : ndarray, shape (n_nodes, 3)
+        Displacements and rotations at the end.
+    """
+    mesh, notes = model.mesh, _in_another(model, u)
+    part = part_of_nodes(mesh)
+    for curve in rigid_curves(model):
+        pairs = [pair for pair in model.contacts if pair.master is curve]
+        slaves = np.concatenate([_surface_nodes(model, pair.slave) for pair in pairs])
+        bodies = np.isin(part, part[slaves]) & (part >= 0)
+        bodies[slaves] = False
+        nodes = np.flatnonzero(bodies)
+        if not len(nodes):
+            continue
+        # Seen from a curve that moved with its reference node.
+        before, after = mesh.points[nodes], mesh.points[nodes] + u[nodes, :2]
+        node, pieces = curve.reference, _chords(curve)
+        if isinstance(node, int | np.integer):
+            at = mesh.points[node]
+            after = _turned(after, -curve.turns * u[node, 2], at + u[node, :2], at)
+        way = np.linalg.norm(after - before, axis=1)
+        depth = np.where(_depth(pieces, before) > 0.0, 0.0, _depth(pieces, after))
+        depth[depth > way] = 0.0  # it came there around an end
+        # What may lie deeper than the slave surface beside it [mean distance of slave nodes].
+        shallow = NAMED * float(np.ptp(mesh.points[slaves], axis=0).max()) / len(slaves)
+        deepest = int(np.argmax(depth))
+        if depth[deepest] > shallow:
+            notes.append(
+                f"contact pair {pairs[0].name!r}: {int((depth > shallow).sum())} nodes of "
+                f"the body that are in no pair with this rigid curve lie behind it, node "
+                f"{mesh.node_labels[nodes[deepest]]} by {depth[deepest]:.3g}: they passed through. "
+                "Give the slave surface all edges of the body that may meet the curve"
+            )
+    return notes
+
+
+def _in_another(model: Model, u: Floats) -> list[str]:
+    """Notes on bodies of which a part in no pair lies in the other body of their pair."""
+    mesh, notes = model.mesh, []
+    part, x = part_of_nodes(mesh), mesh.points + u[:, :2]
+    rims = [nodes[:2] for nodes in mesh.edge_nodes(mesh.boundary_edges())]
+    edges = np.array(rims, np.int64).reshape(-1, 2)
+    surfaces = [s for pair in model.contacts for s in (pair.slave, pair.master)]
+    joined = np.concatenate(
+        [_surface_nodes(model, s) for s in surfaces if not isinstance(s, RigidCurve)]
+    )
+    free = np.setdiff1d(edges, joined)
+    for pair in model.contacts:
+        if isinstance(pair.master, RigidCurve):
+            continue
+        sides = [np.unique(part[_surface_nodes(model, s)]) for s in (pair.slave, pair.master)]
+        for own, other in (sides, sides[::-1]):
+            nodes = free[np.isin(part[free], np.setdiff1d(own, other))]
+            rim = edges[np.isin(part[edges[:, 0]], np.setdiff1d(other, own))]
+            if not len(rim):
+                continue
+            length = np.hypot(*(x[rim[:, 1]] - x[rim[:, 0]]).T)
+            inside = [k for k in nodes if _inside(x, rim, k) and not _inside(mesh.points, rim, k)]
+            depth = [_distance(x, rim, k) for k in inside]
+            if depth and max(depth) > NAMED * float(length.mean()):
+                deepest = int(np.argmax(depth))
+                notes.append(
+                    f"contact pair {pair.name!r}: boundary nodes that are in no pair lie in the "
+                    f"other body ({len(inside)} of them), node "
+                    f"{mesh.node_labels[inside[deepest]]} by {depth[deepest]:.3g}. Give the "
+                    "surfaces of the pair all edges that may meet"
+                )
+    return notes
+
+
+def _inside(x: Floats, rim: Ints, node: int) -> bool:
+    """Whether a node is inside closed boundaries (m, 2), by the parity of crossings."""
+    (ax, ay), (bx, by) = x[rim[:, 0]].T, x[rim[:, 1]].T
+    spans = (ay > x[node, 1]) != (by > x[node, 1])
+    rise = np.where(spans, by - ay, 1.0)
+    return bool((spans & (ax + (x[node, 1] - ay) / rise * (bx - ax) > x[node, 0])).sum() % 2)
+
+
+def _distance(x: Floats, rim: Ints, node: int) -> float:
+    """Distance of a node from the nearest of some edges (m, 2) [length]."""
+    along, to = x[rim[:, 1]] - x[rim[:, 0]], x[node] - x[rim[:, 0]]
+    share = np.clip((to * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    return float(np.hypot(*(to - share[:, None] * along).T).min())
+
+
+def _surface_nodes(model: Model, surface: str | Ints) -> Ints:
+    edges, single = edges_or_nodes(model.mesh, surface)
+    return single if len(single) else model.mesh.edge_set_nodes(edges)
+
+
+__all__ = [
+    "NAMED",
+    "UNSEEN",
+    "check_side",
+    "other_side",
+    "outside",
+    "passed",
+    "passed_through",
+    "times_of_crossing",
+]
