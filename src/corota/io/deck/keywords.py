@@ -50,6 +50,16 @@ def card(place: str) -> Callable[..., None]:
     return lazy(f"corota.io.deck.cards.{place.replace('.', ':')}")
 
 
+def anywhere(place: str, parameters: str = "", ignored: str = "") -> Keyword:
+    """Keyword of model and steps, by the place of its function."""
+    return Keyword(card(place), parameters, ignored)
+
+
+def of_model(place: str, parameters: str = "", ignored: str = "") -> Keyword:
+    """Keyword that stands before the steps, by the place of its function."""
+    return Keyword(card(place), parameters, ignored, "model")
+
+
 def heading(deck: Deck, card: Card) -> None:
     """``*HEADING``: free text."""
     deck.heading += [row.text.strip() for row in card.rows()]
@@ -71,349 +81,283 @@ _FILE_IGNORED = (
 _TABLE: dict[str, Keyword] = {
     "HEADING": Keyword(heading, ignored="UNITS"),
     "PARAMETER": Keyword(parameter, ignored="DEPENDENT INDEPENDENT"),
-    "NODE": Keyword(card("mesh.node"), "NSET SYSTEM", place="model"),
-    "NGEN": Keyword(card("generate.ngen"), "NSET LINE", place="model"),
-    "NFILL": Keyword(card("generate.nfill"), "NSET BIAS", place="model"),
-    "NCOPY": Keyword(
-        card("generate.ncopy"), "CHANGENUMBER OLDSET NEWSET SHIFT MULTIPLE REFLECT", place="model"
+    "NODE": of_model("mesh.node", "NSET SYSTEM"),
+    "NGEN": of_model("generate.ngen", "NSET LINE"),
+    "NFILL": of_model("generate.nfill", "NSET BIAS"),
+    "NCOPY": of_model("generate.ncopy", "CHANGENUMBER OLDSET NEWSET SHIFT MULTIPLE REFLECT"),
+    "ELGEN": of_model("generate.elgen", "ELSET"),
+    "ELCOPY": of_model("generate.elcopy", "ELEMENTSHIFT OLDSET NEWSET SHIFTNODES", "REFLECT"),
+    "SYSTEM": of_model("generate.system"),
+    "ELEMENT": of_model("mesh.element", "TYPE ELSET"),
+    "NSET": anywhere("mesh.nset", "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED"),
+    "ELSET": anywhere("mesh.elset", "ELSET GENERATE INSTANCE INTERNAL"),
+    "SURFACE": of_model(
+        "mesh.surface", "NAME TYPE INTERNAL FILLETRADIUS COMBINE", "REGIONTYPE TRIM MAXRATIO"
     ),
-    "ELGEN": Keyword(card("generate.elgen"), "ELSET", place="model"),
-    "ELCOPY": Keyword(
-        card("generate.elcopy"), "ELEMENTSHIFT OLDSET NEWSET SHIFTNODES", "REFLECT", place="model"
-    ),
-    "SYSTEM": Keyword(card("generate.system"), place="model"),
-    "ELEMENT": Keyword(card("mesh.element"), "TYPE ELSET", place="model"),
-    "NSET": Keyword(card("mesh.nset"), "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED"),
-    "ELSET": Keyword(card("mesh.elset"), "ELSET GENERATE INSTANCE INTERNAL"),
-    "SURFACE": Keyword(
-        card("mesh.surface"),
-        "NAME TYPE INTERNAL FILLETRADIUS COMBINE",
-        "REGIONTYPE TRIM MAXRATIO",
-        place="model",
-    ),
-    "MATERIAL": Keyword(card("material.material"), "NAME", place="model"),
-    "ELASTIC": Keyword(card("material.elastic"), "TYPE MODULI DEPENDENCIES", place="model"),
+    "MATERIAL": of_model("material.material", "NAME"),
+    "ELASTIC": of_model("material.elastic", "TYPE MODULI DEPENDENCIES"),
     # Laws with a card of their own.
     **{
         law.card: Keyword(partial(card("material.constants"), law=name), place="model")
         for name, law in LAWS.items()
         if key(law.card) == name
     },
-    "HYPERELASTIC": Keyword(
-        card("hyperelastic.hyperelastic"),
+    "HYPERELASTIC": of_model(
+        "hyperelastic.hyperelastic",
         "NEOHOOKE MOONEY-RIVLIN YEOH ARRUDA-BOYCE POLYNOMIAL REDUCEDPOLYNOMIAL OGDEN N "
         "TESTDATAINPUT POISSON MODULI",
-        place="model",
     ),
-    "HYPERFOAM": Keyword(
-        card("hyperelastic.hyperfoam"), "N TESTDATAINPUT POISSON MODULI", place="model"
-    ),
-    "MULLINS EFFECT": Keyword(card("hyperelastic.mullins_effect"), place="model"),
-    "USER MATERIAL": Keyword(
-        card("user_material.user_material"), "CONSTANTS TYPE", "UNSYMM", place="model"
-    ),
-    "DEPVAR": Keyword(card("user_material.depvar"), "", "DELETE", place="model"),
-    "VISCOELASTIC": Keyword(card("viscoelastic.viscoelastic"), "TIME", place="model"),
-    "TRS": Keyword(card("viscoelastic.trs"), "DEFINITION", place="model"),
+    "HYPERFOAM": of_model("hyperelastic.hyperfoam", "N TESTDATAINPUT POISSON MODULI"),
+    "MULLINS EFFECT": of_model("hyperelastic.mullins_effect"),
+    "USER MATERIAL": of_model("user_material.user_material", "CONSTANTS TYPE", "UNSYMM"),
+    "DEPVAR": of_model("user_material.depvar", "", "DELETE"),
+    "VISCOELASTIC": of_model("viscoelastic.viscoelastic", "TIME"),
+    "TRS": of_model("viscoelastic.trs", "DEFINITION"),
     **{
         f"{test.upper()} TEST DATA": Keyword(
             partial(card("hyperelastic.test_data"), test=test), place="model"
         )
         for test in ("uniaxial", "biaxial", "planar")
     },
-    "DENSITY": Keyword(card("material.density"), "DEPENDENCIES", place="model"),
-    "EXPANSION": Keyword(card("thermal.expansion"), "TYPE ZERO DEPENDENCIES", place="model"),
-    "PLASTIC": Keyword(
-        card("plastic.plastic"),
-        "HARDENING DATATYPE NUMBERBACKSTRESSES RATE DEPENDENCIES",
-        place="model",
+    "DENSITY": of_model("material.density", "DEPENDENCIES"),
+    "EXPANSION": of_model("thermal.expansion", "TYPE ZERO DEPENDENCIES"),
+    "PLASTIC": of_model(
+        "plastic.plastic", "HARDENING DATATYPE NUMBERBACKSTRESSES RATE DEPENDENCIES"
     ),
-    "POTENTIAL": Keyword(card("plastic.potential"), "", place="model"),
-    "RATE DEPENDENT": Keyword(card("rates.rate_dependent"), "TYPE", place="model"),
-    "CREEP": Keyword(card("rates.creep"), "LAW", place="model"),
-    "SPECIFIC HEAT": Keyword(card("rates.specific_heat"), "", place="model"),
-    "INELASTIC HEAT FRACTION": Keyword(card("rates.heat_fraction"), "", place="model"),
-    "CYCLIC HARDENING": Keyword(card("plastic.cyclic_hardening"), "PARAMETERS", place="model"),
-    "SOLID SECTION": Keyword(
-        card("material.solid_section"),
+    "POTENTIAL": of_model("plastic.potential"),
+    "RATE DEPENDENT": of_model("rates.rate_dependent", "TYPE"),
+    "CREEP": of_model("rates.creep", "LAW"),
+    "SPECIFIC HEAT": of_model("rates.specific_heat"),
+    "INELASTIC HEAT FRACTION": of_model("rates.heat_fraction"),
+    "CYCLIC HARDENING": of_model("plastic.cyclic_hardening", "PARAMETERS"),
+    "SOLID SECTION": of_model(
+        "material.solid_section",
         "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0 NODALTHICKNESS",
         "CONTROLS OFFSET REFNODE STACKDIRECTION SYMMETRIC LAYUP",
-        place="model",
     ),
-    "SHELL SECTION": Keyword(
-        card("material.shell_section"),
+    "SHELL SECTION": of_model(
+        "material.shell_section",
         "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS SHELLTHICKNESS",
         "OFFSET CONTROLS POISSON SECTIONINTEGRATION TEMPERATURE DENSITY THICKNESSMODULUS ZERO "
         "STACKDIRECTION SYMMETRIC LAYUP",
-        place="model",
     ),
-    "DISTRIBUTION": Keyword(
-        card("distribution.distribution"), "NAME LOCATION TABLE", place="model"
-    ),
-    "DISTRIBUTION TABLE": Keyword(card("distribution.distribution_table"), "NAME", place="model"),
-    "NODAL THICKNESS": Keyword(card("material.nodal_thickness"), place="model"),
-    "IMPERFECTION": Keyword(
-        card("imperfection.imperfection"), "FILE STEP INC NSET SYSTEM", place="model"
-    ),
-    "MEMBRANE SECTION": Keyword(
-        card("material.shell_section"),
+    "DISTRIBUTION": of_model("distribution.distribution", "NAME LOCATION TABLE"),
+    "DISTRIBUTION TABLE": of_model("distribution.distribution_table", "NAME"),
+    "NODAL THICKNESS": of_model("material.nodal_thickness"),
+    "IMPERFECTION": of_model("imperfection.imperfection", "FILE STEP INC NSET SYSTEM"),
+    "MEMBRANE SECTION": of_model(
+        "material.shell_section",
         "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS",
         "OFFSET CONTROLS POISSON",
-        place="model",
     ),
-    "BEAM SECTION": Keyword(
-        card("lines.beam_section"),
+    "BEAM SECTION": of_model(
+        "lines.beam_section",
         "ELSET MATERIAL SECTION OFFSET1 OFFSET2 TEMPERATURE POISSON",
         "LUMP ROTARYINERTIA CONTROLS ORIENTATION",
-        place="model",
     ),
-    "BEAM GENERAL SECTION": Keyword(
-        card("lines.beam_general_section"),
+    "BEAM GENERAL SECTION": of_model(
+        "lines.beam_general_section",
         "ELSET SECTION DENSITY OFFSET1 OFFSET2",
         "POISSON LUMP ROTARYINERTIA ZERO",
-        place="model",
     ),
-    "TRANSVERSE SHEAR STIFFNESS": Keyword(card("lines.shear_stiffness"), place="model"),
-    "SPRING": Keyword(card("lines.spring"), "ELSET NONLINEAR", place="model"),
-    "ORIENTATION": Keyword(
-        card("material.orientation"), "NAME SYSTEM", "DEFINITION", place="model"
-    ),
-    "AMPLITUDE": Keyword(
-        card("amplitudes.amplitude"),
+    "TRANSVERSE SHEAR STIFFNESS": of_model("lines.shear_stiffness"),
+    "SPRING": of_model("lines.spring", "ELSET NONLINEAR"),
+    "ORIENTATION": of_model("material.orientation", "NAME SYSTEM", "DEFINITION"),
+    "AMPLITUDE": anywhere(
+        "amplitudes.amplitude",
         "NAME TIME SHIFTX SHIFTY DEFINITION VALUE FIXEDINTERVAL BEGIN",
         "SMOOTH",
     ),
-    "TIME POINTS": Keyword(card("amplitudes.time_points"), "NAME TIME GENERATE"),
-    "STEP": Keyword(
-        card("step.step"),
+    "TIME POINTS": anywhere("amplitudes.time_points", "NAME TIME GENERATE"),
+    "STEP": anywhere(
+        "step.step",
         "NLGEOM INC AMPLITUDE PERTURBATION",
         "NAME UNSYMM EXTRAPOLATION SOLVER CONVERTSDI",
     ),
-    "END STEP": Keyword(card("step.end_step")),
-    "STATIC": Keyword(
-        card("path.static"),
+    "END STEP": anywhere("step.end_step"),
+    "STATIC": anywhere(
+        "path.static",
         "DIRECT RIKS STABILIZE",
         "SOLVER TIMERESET ALLSDTOL CONTINUE FACTOR ADIABATIC LONGTERM",
     ),
-    "VISCO": Keyword(card("rates.visco"), "DIRECT CETOL", "SOLVER"),
-    "BUCKLE": Keyword(card("path.buckle"), "", "SOLVER EIGENSOLVER"),
-    "CONTROLS": Keyword(card("path.controls"), "PARAMETERS RESET", "ANALYSIS TYPE FIELD"),
-    "DYNAMIC": Keyword(
-        card("dynamic.dynamic"),
+    "VISCO": anywhere("rates.visco", "DIRECT CETOL", "SOLVER"),
+    "BUCKLE": anywhere("path.buckle", "", "SOLVER EIGENSOLVER"),
+    "CONTROLS": anywhere("path.controls", "PARAMETERS RESET", "ANALYSIS TYPE FIELD"),
+    "DYNAMIC": anywhere(
+        "dynamic.dynamic",
         "ALPHA BETA GAMMA DIRECT DIRECTUSERCONTROL EXPLICIT APPLICATION TIMEINTEGRATOR SCHEME "
         "NOHAF",
         "SOLVER RELATIVETOABSOLUTE HAFTOL HALFINCSCALEFACTOR INITIAL IMPACT SCALEFACTOR "
         "ELEMENTBYELEMENT INCREMENTATION ADIABATIC IMPROVEDDTMETHOD FIXEDTIMEINCREMENTATION",
     ),
     **{
-        f"{name} MASS SCALING": Keyword(
-            card("mass_scaling.mass_scaling"), "ELSET FACTOR DT TYPE", "FREQUENCY NUMBERINTERVAL"
+        f"{name} MASS SCALING": anywhere(
+            "mass_scaling.mass_scaling", "ELSET FACTOR DT TYPE", "FREQUENCY NUMBERINTERVAL"
         )
         for name in ("FIXED", "VARIABLE")
     },
-    "COMPLEX FREQUENCY": Keyword(card("dynamic.complex_frequency"), "CORIOLIS", "SOLVER STORAGE"),
-    "FREQUENCY": Keyword(
-        card("dynamic.frequency"),
+    "COMPLEX FREQUENCY": anywhere("dynamic.complex_frequency", "CORIOLIS", "SOLVER STORAGE"),
+    "FREQUENCY": anywhere(
+        "dynamic.frequency",
         "",
         "SOLVER STORAGE EIGENSOLVER NORMALIZATION ACOUSTICCOUPLING RESIDUALMODES "
         "NUMBERINTERVAL SIM BIAS DAMPINGPROJECTION",
     ),
-    "MODAL DYNAMIC": Keyword(card("dynamic.modal_dynamic"), "", "SOLVER DIRECT"),
-    "STEADY STATE DYNAMICS": Keyword(
-        card("dynamic.steady_state"), "DIRECT", "SOLVER FREQUENCYSCALE INTERVAL FRICTIONDAMPING"
+    "MODAL DYNAMIC": anywhere("dynamic.modal_dynamic", "", "SOLVER DIRECT"),
+    "STEADY STATE DYNAMICS": anywhere(
+        "dynamic.steady_state", "DIRECT", "SOLVER FREQUENCYSCALE INTERVAL FRICTIONDAMPING"
     ),
-    "MODAL DAMPING": Keyword(card("dynamic.modal_damping"), "RAYLEIGH VISCOUS DEFINITION", "MODAL"),
-    "DAMPING": Keyword(card("dynamic.damping"), "ALPHA BETA"),
-    "GLOBAL DAMPING": Keyword(card("dynamic.global_damping"), "ALPHA BETA", "FIELD"),
-    "MASS": Keyword(card("attachments.mass"), "ELSET", place="model"),
-    "ROTARY INERTIA": Keyword(card("attachments.rotary_inertia"), "ELSET", place="model"),
-    "NONSTRUCTURAL MASS": Keyword(
-        card("material.nonstructural_mass"), "ELSET UNITS DISTRIBUTION", place="model"
+    "MODAL DAMPING": anywhere("dynamic.modal_damping", "RAYLEIGH VISCOUS DEFINITION", "MODAL"),
+    "DAMPING": anywhere("dynamic.damping", "ALPHA BETA"),
+    "GLOBAL DAMPING": anywhere("dynamic.global_damping", "ALPHA BETA", "FIELD"),
+    "MASS": of_model("attachments.mass", "ELSET"),
+    "ROTARY INERTIA": of_model("attachments.rotary_inertia", "ELSET"),
+    "NONSTRUCTURAL MASS": of_model("material.nonstructural_mass", "ELSET UNITS DISTRIBUTION"),
+    "DASHPOT": of_model("attachments.dashpot", "ELSET NONLINEAR", "RTOL REGULARIZE"),
+    "CONNECTOR SECTION": of_model("connectors.connector_section", "ELSET BEHAVIOR", "CONTROLS"),
+    "CONNECTOR BEHAVIOR": of_model(
+        "connectors.connector_behavior", "NAME", "INTEGRATION EXTRAPOLATION"
     ),
-    "DASHPOT": Keyword(
-        card("attachments.dashpot"), "ELSET NONLINEAR", "RTOL REGULARIZE", place="model"
-    ),
-    "CONNECTOR SECTION": Keyword(
-        card("connectors.connector_section"), "ELSET BEHAVIOR", "CONTROLS", place="model"
-    ),
-    "CONNECTOR BEHAVIOR": Keyword(
-        card("connectors.connector_behavior"), "NAME", "INTEGRATION EXTRAPOLATION", place="model"
-    ),
-    "CONNECTOR ELASTICITY": Keyword(
-        card("connectors.connector_elasticity"),
+    "CONNECTOR ELASTICITY": of_model(
+        "connectors.connector_elasticity",
         "COMPONENT NONLINEAR RIGID",
         "REGULARIZE RTOL EXTRAPOLATION",
-        place="model",
     ),
-    "CONNECTOR DAMPING": Keyword(
-        card("connectors.connector_damping"),
-        "COMPONENT NONLINEAR",
-        "TYPE REGULARIZE RTOL EXTRAPOLATION",
-        place="model",
+    "CONNECTOR DAMPING": of_model(
+        "connectors.connector_damping", "COMPONENT NONLINEAR", "TYPE REGULARIZE RTOL EXTRAPOLATION"
     ),
-    "CONNECTOR STOP": Keyword(
-        card("connectors.connector_stop"), "COMPONENT", "REGULARIZE", place="model"
-    ),
+    "CONNECTOR STOP": of_model("connectors.connector_stop", "COMPONENT", "REGULARIZE"),
     "CONNECTOR MOTION": Keyword(
-        card("connectors.connector_motion"), "AMPLITUDE OP TYPE", place="step"
+        card("connectors.connector_motion"), "AMPLITUDE OP TYPE", "", "step"
     ),
-    "CONNECTOR LOAD": Keyword(card("connectors.connector_load"), "AMPLITUDE OP", place="step"),
-    "RELEASE": Keyword(card("release.release"), place="model"),
-    "GAP": Keyword(card("attachments.gap"), "ELSET", place="model"),
-    "INITIAL CONDITIONS": Keyword(
-        card("dynamic.initial_conditions"), "TYPE", "VARIABLE", place="model"
-    ),
-    "EQUATION": Keyword(card("tie.equation"), place="model"),
-    "MPC": Keyword(card("tie.mpc"), place="model"),
-    "RIGID BODY": Keyword(
-        card("tie.rigid_body"),
+    "CONNECTOR LOAD": Keyword(card("connectors.connector_load"), "AMPLITUDE OP", "", "step"),
+    "RELEASE": of_model("release.release"),
+    "GAP": of_model("attachments.gap", "ELSET"),
+    "INITIAL CONDITIONS": of_model("dynamic.initial_conditions", "TYPE", "VARIABLE"),
+    "EQUATION": of_model("tie.equation"),
+    "MPC": of_model("tie.mpc"),
+    "RIGID BODY": of_model(
+        "tie.rigid_body",
         "NSET ELSET ANALYTICALSURFACE REFNODE ROTNODE PINNSET TIENSET",
         "POSITION ISOTHERMAL",
-        place="model",
     ),
-    "COUPLING": Keyword(
-        card("tie.coupling"), "REFNODE SURFACE INFLUENCERADIUS", "CONSTRAINTNAME", place="model"
-    ),
-    "KINEMATIC COUPLING": Keyword(card("tie.kinematic_coupling"), "REFNODE", place="model"),
-    "DISTRIBUTING COUPLING": Keyword(card("tie.distributing_coupling"), "ELSET", place="model"),
-    "KINEMATIC": Keyword(card("tie.kinematic"), place="model"),
-    "DISTRIBUTING": Keyword(
-        card("tie.distributing"), "WEIGHTINGMETHOD", ignored="COUPLING", place="model"
-    ),
-    "PRE-TENSION SECTION": Keyword(
-        card("pretension.pretension"), "SURFACE ELEMENT NODE", "NAME", place="model"
-    ),
-    "EMBEDDED ELEMENT": Keyword(
-        card("embedded.embedded_element"),
+    "COUPLING": of_model("tie.coupling", "REFNODE SURFACE INFLUENCERADIUS", "CONSTRAINTNAME"),
+    "KINEMATIC COUPLING": of_model("tie.kinematic_coupling", "REFNODE"),
+    "DISTRIBUTING COUPLING": of_model("tie.distributing_coupling", "ELSET"),
+    "KINEMATIC": of_model("tie.kinematic"),
+    "DISTRIBUTING": of_model("tie.distributing", "WEIGHTINGMETHOD", ignored="COUPLING"),
+    "PRE-TENSION SECTION": of_model("pretension.pretension", "SURFACE ELEMENT NODE", "NAME"),
+    "EMBEDDED ELEMENT": of_model(
+        "embedded.embedded_element",
         "HOSTELSET EXTERIORTOLERANCE",
         "ROUNDOFFTOLERANCE ABSOLUTEEXTERIORTOLERANCE",
-        place="model",
     ),
-    "TRANSFORM": Keyword(card("tie.transform"), "NSET TYPE", place="model"),
-    "CONTACT PAIR": Keyword(
-        card("contact.contact_pair"),
+    "TRANSFORM": of_model("tie.transform", "NSET TYPE"),
+    "CONTACT PAIR": anywhere(
+        "contact.contact_pair",
         "INTERACTION TYPE ADJUST SMALLSLIDING SMOOTH TIED",
         "EXTENSIONZONE HCRIT TRACKING NOTHICKNESS SUPPLEMENTARYCONSTRAINTS OP WEIGHT CPSET "
         "MECHANICALCONSTRAINT GEOMETRICCORRECTION MINIMUMDISTANCE",
     ),
-    "CONTACT": Keyword(card("general_contact.general"), "", "OP"),
-    "CONTACT INCLUSIONS": Keyword(card("general_contact.inclusions"), "ALLEXTERIOR"),
-    "CONTACT EXCLUSIONS": Keyword(card("general_contact.exclusions")),
-    "CONTACT PROPERTY ASSIGNMENT": Keyword(card("general_contact.property_assignment")),
-    "CONTACT INITIALIZATION DATA": Keyword(
-        card("general_contact.initialization_data"),
+    "CONTACT": anywhere("general_contact.general", "", "OP"),
+    "CONTACT INCLUSIONS": anywhere("general_contact.inclusions", "ALLEXTERIOR"),
+    "CONTACT EXCLUSIONS": anywhere("general_contact.exclusions"),
+    "CONTACT PROPERTY ASSIGNMENT": anywhere("general_contact.property_assignment"),
+    "CONTACT INITIALIZATION DATA": of_model(
+        "general_contact.initialization_data",
         "NAME INTERFERENCE SEARCHABOVE INITIALCLEARANCE",
         "SEARCHBELOW",
-        place="model",
     ),
-    "CONTACT INITIALIZATION ASSIGNMENT": Keyword(card("general_contact.initialization_assignment")),
-    "CONTACT FORMULATION": Keyword(card("general_contact.formulation"), "TYPE"),
-    "CONTACT CONTROLS ASSIGNMENT": Keyword(
-        card("general_contact.formulation"),
+    "CONTACT INITIALIZATION ASSIGNMENT": anywhere("general_contact.initialization_assignment"),
+    "CONTACT FORMULATION": anywhere("general_contact.formulation", "TYPE"),
+    "CONTACT CONTROLS ASSIGNMENT": anywhere(
+        "general_contact.formulation",
         "TYPE CONTACTTHICKNESSREDUCTION AUTOMATICOVERCLOSURERESOLUTION NODALEROSION "
         "SCALEPENALTY STABILIZE SEEDONLY",
     ),
-    "SURFACE PROPERTY ASSIGNMENT": Keyword(card("general_contact.formulation"), "PROPERTY"),
-    "SURFACE INTERACTION": Keyword(
-        card("contact.surface_interaction"),
+    "SURFACE PROPERTY ASSIGNMENT": anywhere("general_contact.formulation", "PROPERTY"),
+    "SURFACE INTERACTION": of_model(
+        "contact.surface_interaction",
         "NAME",
         "DEPVAR PROPERTIES UNSYMM PADTHICKNESS TRACKINGTHICKNESS",
-        place="model",
     ),
-    "SURFACE BEHAVIOR": Keyword(
-        card("contact.surface_behavior"),
+    "SURFACE BEHAVIOR": anywhere(
+        "contact.surface_behavior",
         "PRESSURE-OVERCLOSURE NOSEPARATION",
         "AUGMENTEDLAGRANGE DIRECT PENALTY",
     ),
-    "CONTACT DAMPING": Keyword(
-        card("contact.contact_damping"), "DEFINITION", "TANGENTFRACTION", place="model"
-    ),
-    "FRICTION": Keyword(
-        card("contact.friction"),
+    "CONTACT DAMPING": of_model("contact.contact_damping", "DEFINITION", "TANGENTFRACTION"),
+    "FRICTION": anywhere(
+        "contact.friction",
         "ROUGH TAUMAX EXPONENTIALDECAY",
         "SLIPTOLERANCE LAGRANGE ELASTICSLIP SHEARTRACTIONSLOPE",
     ),
-    "CHANGE FRICTION": Keyword(card("contact.change_friction"), "INTERACTION RESET RAMP"),
-    "CHANGE SURFACE BEHAVIOR": Keyword(card("contact.change_surface_behavior"), "INTERACTION"),
-    "MODEL CHANGE": Keyword(card("contact.model_change"), "TYPE ADD REMOVE ACTIVATE"),
-    "CLEARANCE": Keyword(card("contact.clearance"), "SLAVE MASTER VALUE", place="model"),
-    "TIE": Keyword(
-        card("contact.tie"),
-        "NAME POSITIONTOLERANCE ADJUST",
-        "TYPE NOROTATION NOTHICKNESS",
-        place="model",
-    ),
-    "CONTACT CONTROLS": Keyword(
-        card("contact.contact_controls"),
+    "CHANGE FRICTION": anywhere("contact.change_friction", "INTERACTION RESET RAMP"),
+    "CHANGE SURFACE BEHAVIOR": anywhere("contact.change_surface_behavior", "INTERACTION"),
+    "MODEL CHANGE": anywhere("contact.model_change", "TYPE ADD REMOVE ACTIVATE"),
+    "CLEARANCE": of_model("contact.clearance", "SLAVE MASTER VALUE"),
+    "TIE": of_model("contact.tie", "NAME POSITIONTOLERANCE ADJUST", "TYPE NOROTATION NOTHICKNESS"),
+    "CONTACT CONTROLS": anywhere(
+        "contact.contact_controls",
         "STABILIZE SLAVE MASTER",
         "RESET AUTOMATICTOLERANCES APPROACH MAXCHP PERRMX UERRMX FRICTIONONSET TANGENTFRACTION "
         "LAGRANGEMULTIPLIER ABSOLUTEPENETRATIONTOLERANCE RELATIVEPENETRATIONTOLERANCE "
         "STIFFNESSSCALEFACTOR TYPE CPSET FASTLOCALTRK GLOBTRKINC SCALEPENALTY WARP",
     ),
-    "CONTACT INTERFERENCE": Keyword(card("contact.contact_interference"), "SHRINK", "TYPE OP"),
-    "CONTACT PRINT": Keyword(
-        card("output.contact_print"),
+    "CONTACT INTERFERENCE": anywhere("contact.contact_interference", "SHRINK", "TYPE OP"),
+    "CONTACT PRINT": anywhere(
+        "output.contact_print",
         "SLAVE MASTER TOTALS FREQUENCY FREQUENCYF TIMEPOINTS",
         "SUMMARY NSET SET",
     ),
-    "SECTION PRINT": Keyword(
-        card("output.section_print"),
-        "SURFACE FREQUENCY FREQUENCYF TIMEPOINTS",
-        "NAME AXES UPDATE TOTALS",
+    "SECTION PRINT": anywhere(
+        "output.section_print", "SURFACE FREQUENCY FREQUENCYF TIMEPOINTS", "NAME AXES UPDATE TOTALS"
     ),
-    "CONTACT FILE": Keyword(card("output.contact_file"), _FILE, "NSET SLAVE MASTER"),
-    "CONTACT OUTPUT": Keyword(
-        card("output.contact_file"),
-        _FILE,
-        "NSET SLAVE MASTER VARIABLE CPSET SURFACE",
+    "CONTACT FILE": anywhere("output.contact_file", _FILE, "NSET SLAVE MASTER"),
+    "CONTACT OUTPUT": anywhere(
+        "output.contact_file", _FILE, "NSET SLAVE MASTER VARIABLE CPSET SURFACE"
     ),
-    "BOUNDARY": Keyword(
-        card("supports.boundary"), "OP AMPLITUDE TYPE LOADCASE FIXED REAL IMAGINARY", "REGIONTYPE"
+    "BOUNDARY": anywhere(
+        "supports.boundary", "OP AMPLITUDE TYPE LOADCASE FIXED REAL IMAGINARY", "REGIONTYPE"
     ),
-    "BASE MOTION": Keyword(
-        card("dynamic.base_motion"), "DOF AMPLITUDE TYPE SCALE LOADCASE", "BASENAME"
-    ),
-    "CLOAD": Keyword(
-        card("loads.cload"), "OP AMPLITUDE LOADCASE FOLLOWER REAL IMAGINARY", "REGIONTYPE"
-    ),
-    "DLOAD": Keyword(
-        card("loads.dload"),
+    "BASE MOTION": anywhere("dynamic.base_motion", "DOF AMPLITUDE TYPE SCALE LOADCASE", "BASENAME"),
+    "CLOAD": anywhere("loads.cload", "OP AMPLITUDE LOADCASE FOLLOWER REAL IMAGINARY", "REGIONTYPE"),
+    "DLOAD": anywhere(
+        "loads.dload",
         "OP AMPLITUDE LOADCASE FOLLOWER REAL IMAGINARY",
         "REGIONTYPE CONSTANTRESULTANT",
     ),
-    "DSLOAD": Keyword(
-        card("loads.dsload"),
+    "DSLOAD": anywhere(
+        "loads.dsload",
         "OP AMPLITUDE FOLLOWER LOADCASE ORIENTATION REAL IMAGINARY",
         "REGIONTYPE CONSTANTRESULTANT",
     ),
-    "PRESSURE PENETRATION": Keyword(
-        card("loads.pressure_penetration"), "SLAVE MASTER AMPLITUDE OP", "PENETRATIONTIME"
+    "PRESSURE PENETRATION": anywhere(
+        "loads.pressure_penetration", "SLAVE MASTER AMPLITUDE OP", "PENETRATIONTIME"
     ),
-    "TEMPERATURE": Keyword(card("thermal.temperature"), "OP AMPLITUDE", "LOADCASE"),
-    "NODE PRINT": Keyword(card("output.node_print"), f"NSET {_PRINT} GLOBAL", _PRINT_IGNORED),
-    "EL PRINT": Keyword(
-        card("output.el_print"), f"ELSET {_PRINT}", f"GLOBAL POSITION {_PRINT_IGNORED}"
-    ),
-    "NODE FILE": Keyword(card("output.node_file"), f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
-    "NODE OUTPUT": Keyword(card("output.node_file"), f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
-    "EL FILE": Keyword(card("output.el_file"), f"NSET ELSET {_FILE}", _FILE_IGNORED),
-    "ELEMENT OUTPUT": Keyword(card("output.el_file"), f"NSET ELSET {_FILE}", _FILE_IGNORED),
-    "RESTART": Keyword(
-        card("output.restart"),
+    "TEMPERATURE": anywhere("thermal.temperature", "OP AMPLITUDE", "LOADCASE"),
+    "NODE PRINT": anywhere("output.node_print", f"NSET {_PRINT} GLOBAL", _PRINT_IGNORED),
+    "EL PRINT": anywhere("output.el_print", f"ELSET {_PRINT}", f"GLOBAL POSITION {_PRINT_IGNORED}"),
+    "NODE FILE": anywhere("output.node_file", f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
+    "NODE OUTPUT": anywhere("output.node_file", f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
+    "EL FILE": anywhere("output.el_file", f"NSET ELSET {_FILE}", _FILE_IGNORED),
+    "ELEMENT OUTPUT": anywhere("output.el_file", f"NSET ELSET {_FILE}", _FILE_IGNORED),
+    "RESTART": anywhere(
+        "output.restart",
         "WRITE READ FREQUENCY STEP INC ENDSTEP JOB",
         "OVERLAY NUMBERINTERVAL TIMEMARKS",
     ),
-    "OUTPUT": Keyword(
-        card("output.output"),
+    "OUTPUT": anywhere(
+        "output.output",
         "FREQUENCY FREQUENCYF VARIABLE",
         "FIELD HISTORY NAME OP NUMBERINTERVAL TIMEMARKS TIMEINTERVAL TIMEPOINTS FILTER",
     ),
-    "PART": Keyword(card("assembly.part"), "NAME", place="model"),
-    "END PART": Keyword(card("assembly.end_part"), place="model"),
-    "ASSEMBLY": Keyword(card("assembly.assembly"), "NAME", place="model"),
-    "END ASSEMBLY": Keyword(card("assembly.end_assembly"), place="model"),
-    "INSTANCE": Keyword(card("assembly.instance"), "NAME PART", place="model"),
-    "END INSTANCE": Keyword(card("assembly.end_instance"), place="model"),
+    "PART": of_model("assembly.part", "NAME"),
+    "END PART": of_model("assembly.end_part"),
+    "ASSEMBLY": of_model("assembly.assembly", "NAME"),
+    "END ASSEMBLY": of_model("assembly.end_assembly"),
+    "INSTANCE": of_model("assembly.instance", "NAME PART"),
+    "END INSTANCE": of_model("assembly.end_instance"),
 }
 
 KEYWORDS: dict[str, Keyword] = {key(name): keyword for name, keyword in _TABLE.items()}
