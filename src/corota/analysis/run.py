@@ -7,6 +7,7 @@ import os
 import time as clock
 import warnings
 from copy import copy
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ from corota.analysis.end_moments import add_end_moments
 from corota.analysis.energies import Energies
 from corota.analysis.equations import System
 from corota.analysis.failure import ElementFailure
+from corota.analysis.increment_loop import IncrementLoop
 from corota.analysis.linear.solvers import LinearSolver, make_solver
 from corota.analysis.memory import require_libraries
 from corota.analysis.missed_peaks import missed_peaks, pair_forces
@@ -318,16 +320,14 @@ class Analysis:
             self._begin(step, number, state, reaction)
         self.start = None
 
-        def save(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
-            self._save(number, state, increment, factor, scalars)
-
+        save = partial(self._save, number)
         self.observers.requests = self.requests[number - 1]
         stops = self._stops()
         if state.resumption is not None and state.resumption.checkpoint.leave_step:
             self._leave(state)
         else:
-            run = procedure(step.procedure)
-            run(system, step, number, state, self.observers, save, stops)
+            loop = IncrementLoop(system, step, number, state, self.observers, save)
+            procedure(step.procedure)(loop, step, stops)
             if state.loop is not None and step.restart:
                 increment = self.results.frames[-1].increment if self.results.frames else 0
                 last = take(self, state, (number, increment), 1.0)

@@ -26,11 +26,8 @@ from corota.errors import ConvergenceError, ModelError, UnsupportedError
 from corota.model.paths import Modes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from corota.analysis.equations import System
-    from corota.analysis.observers import Observers
-    from corota.analysis.state import State
+    from corota.analysis.increment_loop import IncrementLoop
     from corota.arrays import Floats
     from corota.model.steps import Buckle
 
@@ -50,15 +47,7 @@ DEAD = (
 BEHIND = 1e-3
 
 
-def buckle_step(
-    system: System,
-    step: Buckle,
-    number: int,
-    state: State,
-    observers: Observers,
-    save: Callable[[State, int, float, dict[str, float]], None],
-    stops: list[float],
-) -> None:
+def buckle_step(loop: IncrementLoop, step: Buckle, stops: list[float]) -> None:
     """Find the buckling factors and modes about the committed state.
 
     Raises
@@ -68,6 +57,7 @@ def buckle_step(
     UnsupportedError
         If loads without a potential or a tangent that jumps leave no eigenvalue problem.
     """
+    system, number, state = loop.system, loop.number, loop.state
     kinematics = system.nlgeom, system.about_linear
     # Without the preload it is the structure at rest that is followed.
     system.set_kinematics(True, about_linear=system.about_linear and step.preload)
@@ -92,7 +82,7 @@ def buckle_step(
     listed = ", ".join(f"{f:.6g}" for f in factors)
     state.notes += [f"buckling step {number}: {note}" for note in (dead or []) + notes]
     state.notes.append(f"buckling factors of step {number}: {listed}")
-    save(state, 1, 0.0, scalars)
+    loop.save(state, 1, 0.0, scalars)
 
 
 def _check_unloaded(system: System, step: Buckle) -> None:

@@ -37,10 +37,7 @@ from corota.model import elements
 from corota.model.schemes import SCHEMES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from corota.analysis.equations import System
-    from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.arrays import Bools, Floats
     from corota.model.loads import Amplitude
@@ -59,15 +56,7 @@ LOAD_ERROR = 0.05
 LEAST, MOST = 0.25, 1.5
 
 
-def dynamic_step(
-    system: System,
-    step: Dynamic,
-    number: int,
-    state: State,
-    observers: Observers,
-    save: Callable[[State, int, float, dict[str, float]], None],
-    stops: list[float],
-) -> None:
+def dynamic_step(loop: IncrementLoop, step: Dynamic, stops: list[float]) -> None:
     """Run a dynamic step from the committed state.
 
     Raises
@@ -77,8 +66,8 @@ def dynamic_step(
     ConvergenceError
         With the reason, when no smaller increment helps.
     """
+    system, state = loop.system, loop.state
     check_density(system)
-    loop = IncrementLoop(system, step, number, state, observers, save)
     if step.scheme == "central_difference":
         explicit_step(loop, step, stops)
         return

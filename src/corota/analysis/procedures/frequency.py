@@ -22,10 +22,7 @@ from corota.errors import ModelError, UnsupportedError
 from corota.model.paths import Modes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from corota.analysis.equations import System
-    from corota.analysis.observers import Observers
+    from corota.analysis.increment_loop import IncrementLoop
     from corota.analysis.state import State
     from corota.arrays import Complex, Floats
     from corota.model.steps import Frequency
@@ -37,15 +34,7 @@ GROWS = 1e-6
 FREE = 1e-9
 
 
-def frequency_step(
-    system: System,
-    step: Frequency,
-    number: int,
-    state: State,
-    observers: Observers,
-    save: Callable[[State, int, float, dict[str, float]], None],
-    stops: list[float],
-) -> None:
+def frequency_step(loop: IncrementLoop, step: Frequency, stops: list[float]) -> None:
     """Find the lowest frequencies and their modes; name what makes the state unstable.
 
     Raises
@@ -53,6 +42,7 @@ def frequency_step(
     ModelError
         If a material has no density, or nothing that moves has mass.
     """
+    system, number, state = loop.system, loop.number, loop.state
     check_density(system)
     lin = LinearMotion(system, state.u, step.mass)
     lin.turns = step.complex_modes
@@ -85,7 +75,7 @@ def frequency_step(
     _name_instability(modes, state, number, None if step.complex_modes else lin.symmetric)
     scalars = _scalars(lin, modes)
     state.at = system.evaluate(state.u, 0.0)
-    save(state, 1, 1.0, scalars)
+    loop.save(state, 1, 1.0, scalars)
 
 
 def _real_modes(lin: LinearMotion, step: Frequency) -> tuple[Floats, Floats]:

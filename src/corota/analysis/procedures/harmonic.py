@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.analysis.equations import System
-    from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.arrays import Complex, Floats
     from corota.model.steps import SteadyState, Step
@@ -34,15 +33,7 @@ if TYPE_CHECKING:
 RESONANCE = 1e-12
 
 
-def steady_state_step(
-    system: System,
-    step: SteadyState,
-    number: int,
-    state: State,
-    observers: Observers,
-    save: Callable[[State, int, float, dict[str, float]], None],
-    stops: list[float],
-) -> None:
+def steady_state_step(loop: IncrementLoop, step: SteadyState, stops: list[float]) -> None:
     """Harmonic response to the step's loads and moves of supports, frequency by frequency.
 
     Each frame is one frequency, which is its step time. Displacement, velocity, acceleration,
@@ -55,9 +46,9 @@ def steady_state_step(
     ModelError
         If there are no modes, or an undamped mode is hit.
     """
+    state = loop.state
     u0, at0 = state.u.copy(), state.at
     v0, a0 = state.v, state.a
-    loop = IncrementLoop(system, step, number, state, observers, save)
     loop.run(HarmonicStepper(loop, step))
     state.u, state.at, state.v, state.a = u0, at0, v0, a0
     state.recover = state.harmonic = None

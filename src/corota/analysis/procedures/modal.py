@@ -16,10 +16,7 @@ from corota.analysis.procedures.reduced import Patterns, Reduced, last_modes
 from corota.analysis.terms.complex_stiffness import relaxing_note
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from corota.analysis.equations import System
-    from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.analysis.terms.linearized import LinearMotion
     from corota.arrays import Floats
@@ -32,15 +29,7 @@ SAME_TIME = 1e-9
 LOST = 0.05
 
 
-def modal_step(
-    system: System,
-    step: ModalDynamic,
-    number: int,
-    state: State,
-    observers: Observers,
-    save: Callable[[State, int, float, dict[str, float]], None],
-    stops: list[float],
-) -> None:
+def modal_step(loop: IncrementLoop, step: ModalDynamic, stops: list[float]) -> None:
     """Linear transient: exact for loads and moves that vary linearly within an increment.
 
     It starts from the displacement and velocity of the steps before, or the model's initial
@@ -51,9 +40,9 @@ def modal_step(
     ModelError
         If there are no modes.
     """
+    system, state = loop.system, loop.state
     if note := relaxing_note(system):
-        state.notes.append(f"modal step {number}: {note}; a Dynamic step relaxes them")
-    loop = IncrementLoop(system, step, number, state, observers, save)
+        state.notes.append(f"modal step {loop.number}: {note}; a Dynamic step relaxes them")
     loop.run(ModalStepper(loop, step, stops))
     state.recover = None
     leave(system, state, step.period)

@@ -3,11 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from typing import Any
 
 #: Module and function of each procedure; a module is imported when a step needs it.
 PROCEDURES = {
@@ -21,7 +19,10 @@ PROCEDURES = {
 
 
 def procedure(name: str) -> Callable[..., Any]:
-    """What runs the steps of a kind; the name is one of :data:`PROCEDURES`."""
+    """Function of an increment loop, its step and the times at which increments end.
+
+    The name is one of :data:`PROCEDURES`.
+    """
     module, function = PROCEDURES[name]
     home = import_module(f"corota.analysis.procedures.{module}")
     found: Callable[..., Any] = getattr(home, function)

@@ -23,12 +23,8 @@ from corota.model.material_table import MaterialTable
 from corota.model.rates import Norton
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.increment_loop import ContactIncrement, Report
-    from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.analysis.terms.contact.equations import ContactEquations
     from corota.arrays import Floats
@@ -67,16 +63,8 @@ UNLOADING = "line search from the elastic tangent"
 TURNED = "bodies turned with their supports"
 
 
-def static_step(
-    system: System,
-    step: Static,
-    number: int,
-    state: State,
-    observers: Observers,
-    save: Callable[[State, int, float, dict[str, float]], None],
-    stops: list[float],
-) -> None:
-    """Run a static step from the committed state; `save` is called with every accepted increment.
+def static_step(loop: IncrementLoop, step: Static, stops: list[float]) -> None:
+    """Run a static step from the committed state.
 
     Raises
     ------
@@ -85,10 +73,10 @@ def static_step(
     SingularError
         If the structure is not constrained.
     """
+    state = loop.state
     if not state.resumes:
         state.step_time = 0.0
         state.stand_still()
-    loop = IncrementLoop(system, step, number, state, observers, save)
     if step.path is not None:
         path_step(loop, step.path)
         return
