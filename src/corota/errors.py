@@ -5,12 +5,10 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+from typing import Any
 
 #: Message where an allocation of Python fails.
 SHORT = "not enough memory for this job; use a coarser mesh or a larger machine"

@@ -3,13 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 from corota.errors import InputError, Location
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
 
 #: Largest number of names in a message.
 MOST_LISTED = 20

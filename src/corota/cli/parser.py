@@ -6,10 +6,8 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from typing import TYPE_CHECKING, NoReturn
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from collections.abc import Sequence
+from typing import NoReturn
 
 #: Names of :data:`corota.analysis.linear.solvers.SOLVERS`, which would load numerics.
 SOLVERS = ("multifrontal", "pardiso", "petsc", "petsc:gamg", "superlu")

@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,9 +15,6 @@ from corota.model.model import Model
 from corota.model.paths import DisplacementControl
 from corota.model.plasticity import Mises
 from corota.model.steps import Static
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 def gripper() -> Model:

@@ -6,15 +6,13 @@ from __future__ import annotations
 import contextlib
 import os
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO
 
 from corota.errors import FileError
 from corota.io.regular_file import open_to_write
 from corota.lazy import lazy
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 copyfile = lazy("shutil:copyfile")
 

@@ -3,17 +3,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from corota.errors import InputError
 from corota.io.atomic_file import replace_text
 from corota.io.result_reader import read_results
 from corota.results.table import NODAL, POSITIVE
 from corota.results.variables import labeled, match_name, stored_as
-
-if TYPE_CHECKING:
-    from os import PathLike
 
 #: Files that ParaView reads.
 READABLE = (".vtkhdf", ".hdf", ".pvd", ".vtu")

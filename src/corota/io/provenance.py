@@ -6,16 +6,14 @@ from __future__ import annotations
 import json
 import os
 import sys
+from collections.abc import Mapping, Sequence
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from corota.errors import FileError
 from corota.io.atomic_file import replace_text
 from corota.io.regular_file import require_regular
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from os import PathLike
 
 #: Libraries that affect the numbers and the files.
 LIBRARIES = ("numpy", "scipy", "h5py")

@@ -7,12 +7,10 @@ import errno
 import json
 import os
 import stat
-from typing import TYPE_CHECKING, Any
+from os import PathLike
+from typing import Any
 
 from corota.errors import FileError
-
-if TYPE_CHECKING:
-    from os import PathLike
 
 #: Flags that some systems do not have.
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0)

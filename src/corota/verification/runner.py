@@ -6,16 +6,13 @@ from __future__ import annotations
 import os
 import time
 import warnings
+from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
-from typing import TYPE_CHECKING
 
 from corota.verification.catalogue import Problem, Value, problems
 from corota.verification.outcome import Outcome
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
 
 def measure(name: str, full: bool = False, pages: str = "") -> Outcome:

@@ -4,13 +4,9 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 from corota.io.deck.lexer import Card, key
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
 
 #: Cards that Abaqus has and CalculiX has not.
 OF_ABAQUS = frozenset(

@@ -3,9 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,9 +18,6 @@ from corota.model.material_table import MaterialTable
 from corota.model.materials import Elastic, Material, Orthotropic
 from corota.model.plasticity import Mises
 from corota.model.ramberg_osgood import RambergOsgood
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
 
 @dataclass(frozen=True)

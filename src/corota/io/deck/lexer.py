@@ -6,18 +6,14 @@ from __future__ import annotations
 import os
 import re
 import stat
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import corota._core as _core
 from corota.errors import Diagnostic, FileError, InputError, Location
 from corota.io.deck import numerals
 from corota.io.deck.parameters import Parameters, Value
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
 
 #: Files inside files.
 MAX_DEPTH = 16

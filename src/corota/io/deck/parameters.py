@@ -7,10 +7,7 @@ import ast
 import math
 import operator
 import re
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping
 
 Value = int | float | str
 

@@ -9,10 +9,7 @@ time: a sample decides, and they are stored uncompressed. Sources: RFC 1950 and 
 from __future__ import annotations
 
 import zlib
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from collections.abc import Sequence
 
 #: Bytes of a sample, and the share of its size that packing must save.
 SAMPLE, GAIN = 1 << 14, 0.4

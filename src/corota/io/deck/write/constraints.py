@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 
 from corota.errors import UnsupportedError
 from corota.io.deck.write.text import DOFS, Writer, number, numbers, rows
 from corota.model.constraints import Coupling, Equation, StraightLine
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 #: Every dof of a planar model.
 ALL = (0, 1, 2)
