@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
@@ -122,6 +123,12 @@ def _damage(name: str | Path) -> Iterator[None]:
         raise FileError(f"{name}: damaged or incomplete: {error}") from None
 
 
+def _check_open(file: Any) -> None:
+    """Refuse to read an array of a frame that outlived its file."""
+    if not file:
+        raise FileError("the result file is closed; take what you need of a frame before")
+
+
 def _whole(good: bool, what: str) -> None:
     if not good:
         raise ValueError(what)
@@ -143,6 +150,9 @@ class Arrays(Mapping[str, "Floats"]):
         if name not in self._names:
             raise KeyError(name)
         return self._read(name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names  # as inherited it would read the array
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -265,6 +275,7 @@ class FileFrames(Sequence[Frame]):
 
     def at_points(self, name: str, number: int) -> Floats:
         """An array of ``PointData`` in a frame."""
+        _check_open(self._file)
         with _damage(self._file.filename):
             data = self._file["VTKHDF/PointData"][name]
             rows = len(data) // self._count
@@ -386,26 +397,57 @@ class FileFrames(Sequence[Frame]):
         return np.asarray(data[number * rows + row], np.float64)
 
     def _fields(self, block: int, number: int, none: set[str]) -> PointFields:
-        group = self._blocks[block]
         element, cells, shape = self._fixed[block]
-        n = len(cells)
-        values = {
-            name: data[number * n : (number + 1) * n]
-            for name, data in group.items()
-            if name not in AT_POINTS and name not in none
-        }
-        points = len(shape)
-        for name, part in values.items():
-            _whole(part.shape[:2] == (n, points) and part.dtype.kind == "f", f"{name} at points")
-        position = group["position"][number * n : (number + 1) * n]
-        forces = group[FORCES][number * n : (number + 1) * n] if FORCES in group else None
-        turns = self._file["VTKHDF/CellData/frame rotation"]
-        rows = len(turns) // self._count
-        every = turns[number * rows : (number + 1) * rows][self._rows.cells]
-        rotation = every[np.minimum(cells, len(every) - 1)]
-        return PointFields(
-            element, cells, position, shape, rotation, group["reference volume"][:], values, forces
-        )
+        group, n = self._blocks[block], len(cells)
+        names = [name for name in group if name not in AT_POINTS and name not in none]
+
+        def read(name: str) -> Floats:
+            _check_open(self._file)
+            with _damage(self._file.filename):
+                part = np.asarray(group[name][number * n : (number + 1) * n])
+                good = name == FORCES or part.shape[:2] == (n, len(shape))
+                _whole(good and part.dtype.kind == "f", f"{name} at points")
+                return part
+
+        def rotation() -> Floats:
+            turns: Floats = self.at_cells("frame rotation", number)[cells]
+            return turns
+
+        return FilePoints(element, cells, shape, group, names, read, rotation)
+
+
+class FilePoints(PointFields):
+    """Values at the points of a block in a file; each array is read when it is requested."""
+
+    def __init__(
+        self,
+        element: str,
+        cells: Ints,
+        shape: Floats,
+        group: Any,
+        names: list[str],
+        read: Callable[[str], Floats],
+        rotation: Callable[[], Floats],
+    ) -> None:
+        self.element, self.cells, self.shape = element, cells, shape
+        self.values = Arrays(names, read)  # type: ignore[assignment]
+        self._group, self._read, self._rotation = group, read, rotation
+
+    @cached_property
+    def points(self) -> Floats:  # type: ignore[override]
+        return self._read("position")
+
+    @cached_property
+    def volume(self) -> Floats:  # type: ignore[override]
+        return np.asarray(self._group["reference volume"][:])
+
+    @cached_property
+    def frame_rotation(self) -> Floats:  # type: ignore[override]
+        return self._rotation()
+
+    @cached_property
+    def forces(self) -> Floats | None:  # type: ignore[override]
+        return self._read(FORCES) if FORCES in self._group else None
 
 
 class FileResults(Results):

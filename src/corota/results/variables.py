@@ -121,11 +121,12 @@ def stored_as(name: str) -> tuple[str, int]:
     return name, -1
 
 
-def averaged_names(averages: Mapping[str, Floats]) -> list[str]:
-    """Components, invariants and scalars that arrays of a file hold."""
-    found = [n for n in (*COMPONENTS, *INVARIANTS) if stored_as(n)[0] in averages]
+def averaged_names(arrays: Iterable[str]) -> list[str]:
+    """Components, invariants and scalars that arrays of a file hold, by the names of these."""
+    there = set(arrays)
+    found = [n for n in (*COMPONENTS, *INVARIANTS) if stored_as(n)[0] in there]
     skip = {*TENSORS, *STORED.values(), *(item.array for _, item in INVARIANTS.values())}
-    return found + sorted(n for n in averages if n not in skip)
+    return found + sorted(there - skip)
 
 
 def averaged_value(averages: Mapping[str, Floats], name: str) -> Floats:
@@ -196,7 +197,7 @@ def names_of(frame: Frame) -> list[str]:
     """All variables of a frame, from its points or from averages."""
     if frame.fields or not frame.averages:
         return [*nodal_names(frame), *available(frame.fields)]
-    of_cells = {n.removeprefix("cell "): v for n, v in frame.cell_averages.items()}
+    of_cells = [n.removeprefix("cell ") for n in frame.cell_averages]
     found = [*nodal_names(frame), *averaged_names(frame.averages)]
     rest = [n for n in averaged_names(of_cells) if n not in found and n != "frame rotation"]
     return [*found, *rest]

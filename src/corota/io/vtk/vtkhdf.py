@@ -321,7 +321,7 @@ class VtkhdfWriter:
         for number, block in enumerate(frame.fields):
             place = self._block(number, block)
             if self._options.points:
-                data[place] = block.values | {"position": block.points}
+                data[place] = {**block.values, "position": block.points}
                 if block.forces is not None:
                     data[place][vf.FORCES] = block.forces
         if self._options.single:
