@@ -6,9 +6,11 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NoReturn
 
+#: Method of parsers that adds an argument.
+Add = Callable[..., object]
 #: Names of :data:`corota.analysis.linear.solvers.SOLVERS`, which would load numerics.
 SOLVERS = ("multifrontal", "pardiso", "petsc", "petsc:gamg", "superlu")
 
@@ -66,24 +68,20 @@ class Version(argparse.Action):
         parser.exit(0)
 
 
-def _run(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("deck", help="input deck (.inp)")
-    parser.add_argument("-o", "--output", metavar="DIR", default=".", help="folder of the results")
-    parser.add_argument(
-        "--name", metavar="JOB", default="", help="name of the job (default: that of the deck)"
-    )
-    parser.add_argument(
-        "--threads", type=_count, metavar="N", help="number of threads (default: all cores)"
-    )
-    _solver(parser)
-    parser.add_argument(
+def _run(add: Add) -> None:
+    add("deck", help="input deck (.inp)")
+    add("-o", "--output", metavar="DIR", default=".", help="folder of the results")
+    add("--name", metavar="JOB", default="", help="name of the job (default: that of the deck)")
+    add("--threads", type=_count, metavar="N", help="number of threads (default: all cores)")
+    _solver(add)
+    add(
         "--format",
         dest="formats",
         action="append",
         choices=("vtkhdf", "pvd", "frd", "frd-binary", "npz", "vtu"),
         help="result format, repeatable (default: vtkhdf)",
     )
-    parser.add_argument(
+    add(
         "--history",
         dest="histories",
         action="append",
@@ -91,40 +89,32 @@ def _run(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="column of the CSV file, such as U2@TIP or RF1@17, repeatable",
     )
-    parser.add_argument(
+    add(
         "--frd",
         nargs="?",
         const="frd",
         choices=("frd", "frd-binary"),
         help="JOB.frd for cgx, PrePoMax, FreeCAD beside the result file; frd-binary: smaller",
     )
-    parser.add_argument(
-        "--points", action="store_true", help="also write values at quadrature points"
-    )
-    parser.add_argument(
-        "--single", action="store_true", help="write fields in single precision (4 bytes)"
-    )
-    parser.add_argument(
+    add("--points", action="store_true", help="also write values at quadrature points")
+    add("--single", action="store_true", help="write fields in single precision (4 bytes)")
+    add(
         "--fields",
         type=_fields,
         default="all",
         metavar="LIST",
         help="fields of the result file, such as U,S,PEEQ; or requested: as *NODE FILE, *EL FILE",
     )
-    parser.add_argument(
-        "--compression", type=int, default=1, metavar="0-9", help="of the result file (default: 1)"
-    )
-    _reading(parser)
-    parser.add_argument(
+    add("--compression", type=int, default=1, metavar="0-9", help="of the result file (default: 1)")
+    _reading(add)
+    add(
         "--checkpoint-every",
         type=_whole,
         metavar="N",
         help="checkpoint every N increments, 0 for none (default: every minute)",
     )
-    parser.add_argument(
-        "--provenance", action="store_true", help="also write versions and digests of the inputs"
-    )
-    parser.add_argument(
+    add("--provenance", action="store_true", help="also write versions and digests of the inputs")
+    add(
         "--serve",
         nargs="?",
         type=_port,
@@ -134,20 +124,16 @@ def _run(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _resume(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("job", help="deck, checkpoint (.ckpt), or stem of the job's files")
-    parser.add_argument(
-        "-o", "--output", metavar="DIR", help="folder of the results (default: that of the job)"
-    )
-    parser.add_argument(
-        "--threads", type=_count, metavar="N", help="number of threads (default: all cores)"
-    )
-    _solver(parser)
+def _resume(add: Add) -> None:
+    add("job", help="deck, checkpoint (.ckpt), or stem of the job's files")
+    add("-o", "--output", metavar="DIR", help="folder of the results (default: that of the job)")
+    add("--threads", type=_count, metavar="N", help="number of threads (default: all cores)")
+    _solver(add)
 
 
-def _sweep(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("deck", help="input deck (.inp)")
-    parser.add_argument(
+def _sweep(add: Add) -> None:
+    add("deck", help="input deck (.inp)")
+    add(
         "-p",
         dest="grid",
         action="append",
@@ -156,7 +142,7 @@ def _sweep(parser: argparse.ArgumentParser) -> None:
         type=_values,
         help="values t=0.2:0.6:9 (first, last, count) or n=1,2,4; repeatable, all combinations",
     )
-    parser.add_argument(
+    add(
         "-m",
         dest="measures",
         action="append",
@@ -164,25 +150,23 @@ def _sweep(parser: argparse.ArgumentParser) -> None:
         required=True,
         help="measure to keep, such as max(RM3@hub) or last(U2@tip); repeatable",
     )
-    parser.add_argument(
+    add(
         "--sample",
         type=_count,
         metavar="N",
         help="N points of a Latin hypercube between the first and last values, instead of a grid",
     )
-    parser.add_argument("--seed", type=int, default=0, help="of the sample")
-    parser.add_argument(
-        "--workers", type=_count, metavar="N", help="number of processes (default: all cores)"
-    )
-    parser.add_argument("-o", "--output", metavar="FILE", help="table; else DECK_sweep.csv")
-    parser.add_argument("--plot", metavar="FILE", help="picture of the first measure")
-    parser.add_argument("--again", action="store_true", help="run stored rows again")
-    _reading(parser)
+    add("--seed", type=int, default=0, help="of the sample")
+    add("--workers", type=_count, metavar="N", help="number of processes (default: all cores)")
+    add("-o", "--output", metavar="FILE", help="table; else DECK_sweep.csv")
+    add("--plot", metavar="FILE", help="picture of the first measure")
+    add("--again", action="store_true", help="run stored rows again")
+    _reading(add)
 
 
-def _seek(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("deck", help="input deck (.inp)")
-    parser.add_argument(
+def _seek(add: Add) -> None:
+    add("deck", help="input deck (.inp)")
+    add(
         "-p",
         dest="range",
         metavar="NAME=FIRST:LAST",
@@ -190,147 +174,123 @@ def _seek(parser: argparse.ArgumentParser) -> None:
         type=_values,
         help="the parameter and its range, such as t=0.3:0.9",
     )
-    parser.add_argument(
-        "-m", dest="measure", metavar="MEASURE", required=True, help="such as max(RF2@tip)"
-    )
-    parser.add_argument("--target", type=float, required=True, help="wanted value of the measure")
-    parser.add_argument(
+    add("-m", dest="measure", metavar="MEASURE", required=True, help="such as max(RF2@tip)")
+    add("--target", type=float, required=True, help="wanted value of the measure")
+    add(
         "--tolerance",
         type=float,
         default=1e-4,
         help="largest error relative to the target (default: 1e-4)",
     )
-    parser.add_argument(
-        "-o", "--output", metavar="FILE", help="store of the runs; else DECK_seek.jsonl"
-    )
-    _reading(parser)
+    add("-o", "--output", metavar="FILE", help="store of the runs; else DECK_seek.jsonl")
+    _reading(add)
 
 
-def _mesh(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("outline", help="drawing (.dxf) or planar face (.step, .iges, .brep)")
-    parser.add_argument(
-        "-o", "--output", metavar="FILE", help="mesh (.inp, .msh); else OUTLINE.inp"
-    )
-    parser.add_argument("--size", type=float, default=0.0, help="largest side of a cell")
-    parser.add_argument(
-        "--through", type=_count, default=4, metavar="N", help="cells across a member (default: 4)"
-    )
-    parser.add_argument("--quadratic", action="store_true", help="cells with middle nodes")
-    parser.add_argument("--triangles", action="store_true", help="triangles only")
-    parser.add_argument("--gap", type=float, default=0.0, help="largest gap that is closed")
-    parser.add_argument(
-        "--layer", dest="layers", action="append", default=[], help="layer to take, repeatable"
-    )
-    parser.add_argument("--plot", metavar="FILE", help="picture of the mesh with its sets")
+def _mesh(add: Add) -> None:
+    add("outline", help="drawing (.dxf) or planar face (.step, .iges, .brep)")
+    add("-o", "--output", metavar="FILE", help="mesh (.inp, .msh); else OUTLINE.inp")
+    add("--size", type=float, default=0.0, help="largest side of a cell")
+    add("--through", type=_count, default=4, metavar="N", help="cells across a member (default: 4)")
+    add("--quadratic", action="store_true", help="cells with middle nodes")
+    add("--triangles", action="store_true", help="triangles only")
+    add("--gap", type=float, default=0.0, help="largest gap that is closed")
+    add("--layer", dest="layers", action="append", default=[], help="layer to take, repeatable")
+    add("--plot", metavar="FILE", help="picture of the mesh with its sets")
 
 
-def _demo(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", nargs="?", default="gripper", help="example; else gripper")
-    parser.add_argument("--list", action="store_true", help="list the examples")
-    parser.add_argument(
-        "-o", "--output", metavar="DIR", default="", help="folder; else corota-demo/NAME"
-    )
+def _demo(add: Add) -> None:
+    add("name", nargs="?", default="gripper", help="example; else gripper")
+    add("--list", action="store_true", help="list the examples")
+    add("-o", "--output", metavar="DIR", default="", help="folder; else corota-demo/NAME")
 
 
-def _check(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("deck", help="input deck (.inp) or mesh (.msh)")
-    _reading(parser)
+def _check(add: Add) -> None:
+    add("deck", help="input deck (.inp) or mesh (.msh)")
+    _reading(add)
 
 
-def _check_material(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", help="input deck (.inp), or Python file (.py) with materials")
-    parser.add_argument("--name", default="", help="one material by its name; else all")
-    parser.add_argument("--plane", choices=("stress", "strain", "both"), default="both")
-    parser.add_argument(
+def _check_material(add: Add) -> None:
+    add("file", help="input deck (.inp), or Python file (.py) with materials")
+    add("--name", default="", help="one material by its name; else all")
+    add("--plane", choices=("stress", "strain", "both"), default="both")
+    add(
         "--strain",
         type=float,
         help="largest strain (default: ten times that of first yield, or 0.02)",
     )
-    parser.add_argument("--plot", metavar="FILE", help="picture of stress against strain")
-    _reading(parser)
+    add("--plot", metavar="FILE", help="picture of stress against strain")
+    _reading(add)
 
 
-def _plot(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", help="result file, or deck or mesh with --model")
-    parser.add_argument(
-        "-o", "--output", metavar="FILE", help="picture: .png .svg .pdf; .gif .mp4 .html"
-    )
-    parser.add_argument("--field", default="", help="variable: MISES S11 SP1 E12 U U2 ... ")
-    parser.add_argument(
-        "--frame", type=int, default=-1, help="index of the frame, from 0 (default: -1, the last)"
-    )
-    parser.add_argument(
-        "--scale", type=float, default=1.0, help="scale factor of the displacements"
-    )
-    parser.add_argument("--element", dest="per_cell", action="store_true", help="element averages")
-    parser.add_argument(
-        "--plastic", action="store_true", help="the elastic-plastic boundary as a line"
-    )
-    parser.add_argument("--edges", action=argparse.BooleanOptionalAction, help="draw element edges")
-    parser.add_argument("--model", action="store_true", help="mesh, sets, supports and loads")
-    parser.add_argument(
+def _plot(add: Add) -> None:
+    add("file", help="result file, or deck or mesh with --model")
+    add("-o", "--output", metavar="FILE", help="picture: .png .svg .pdf; .gif .mp4 .html")
+    add("--field", default="", help="variable: MISES S11 SP1 E12 U U2 ... ")
+    add("--frame", type=int, default=-1, help="index of the frame, from 0 (default: -1, the last)")
+    add("--scale", type=float, default=1.0, help="scale factor of the displacements")
+    add("--element", dest="per_cell", action="store_true", help="element averages")
+    add("--plastic", action="store_true", help="the elastic-plastic boundary as a line")
+    add("--edges", action=argparse.BooleanOptionalAction, help="draw element edges")
+    add("--model", action="store_true", help="mesh, sets, supports and loads")
+    add(
         "--curve",
         metavar="X,Y",
         help="a curve, such as 'U2@TIP,load factor'",
     )
-    parser.add_argument(
+    add(
         "--contact",
         nargs="?",
         const="",
         metavar="PAIR",
         help="pressure along the slave surface of a contact pair, the first by default",
     )
-    parser.add_argument(
+    add(
         "--forces",
         choices=("N", "V", "M"),
         type=str.upper,
         help="diagram of a section force on trusses and beams",
     )
-    parser.add_argument(
+    add(
         "--section",
         nargs=4,
         type=float,
         metavar=("X1", "Y1", "X2", "Y2"),
         help="N, V and M of a cut through planar elements, over the time",
     )
-    parser.add_argument(
+    add(
         "--diagram",
         nargs=5,
         type=float,
         metavar=("X1", "Y1", "X2", "Y2", "WIDTH"),
         help="N, V and M along an axis, of cuts of this width across it",
     )
-    parser.add_argument("--principal", action="store_true", help="principal stresses as crosses")
-    parser.add_argument(
+    add("--principal", action="store_true", help="principal stresses as crosses")
+    add(
         "--flow",
         nargs="?",
         const="principal",
         choices=("principal", "x", "y"),
         help="trajectories of principal stress, or the flow of force along x or y",
     )
-    parser.add_argument("--modes", action="store_true", help="mode shapes with their frequencies")
-    parser.add_argument("--response", action="store_true", help="steady-state response")
-    parser.add_argument("--energies", action="store_true", help="energies of a motion over time")
-    parser.add_argument(
-        "--animate", action="store_true", help="all frames as a GIF, MP4 or HTML page"
-    )
-    parser.add_argument(
+    add("--modes", action="store_true", help="mode shapes with their frequencies")
+    add("--response", action="store_true", help="steady-state response")
+    add("--energies", action="store_true", help="energies of a motion over time")
+    add("--animate", action="store_true", help="all frames as a GIF, MP4 or HTML page")
+    add(
         "--last-iterate",
         action="store_true",
         help="the last attempt of a run that stopped; RF shows the residual",
     )
-    parser.add_argument("--dpi", type=_count, default=150, help="dots per inch")
-    parser.add_argument(
-        "--width", type=float, default=0.0, metavar="MM", help="of the picture, such as 85"
-    )
+    add("--dpi", type=_count, default=150, help="dots per inch")
+    add("--width", type=float, default=0.0, metavar="MM", help="of the picture, such as 85")
 
 
-def _report(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("job", help="name of the job, or any of its files")
-    parser.add_argument("other", nargs="?", help="another job, whose curves are drawn beside")
-    parser.add_argument("-o", "--output", metavar="FILE", help="report (.html; default: JOB.html)")
-    parser.add_argument("--title", default="", help="heading (default: the name of the job)")
-    parser.add_argument(
+def _report(add: Add) -> None:
+    add("job", help="name of the job, or any of its files")
+    add("other", nargs="?", help="another job, whose curves are drawn beside")
+    add("-o", "--output", metavar="FILE", help="report (.html; default: JOB.html)")
+    add("--title", default="", help="heading (default: the name of the job)")
+    add(
         "--limit",
         type=float,
         default=9.5,
@@ -339,63 +299,49 @@ def _report(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _watch(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("job", help="name of the job, its deck, or any of its files")
-    parser.add_argument(
-        "-o", "--output", metavar="DIR", help="folder of the files (default: that of the job)"
-    )
-    parser.add_argument(
-        "--terminal", action="store_true", help="print lines instead of serving a page"
-    )
-    parser.add_argument("--open", action="store_true", help="open the page in a browser")
-    parser.add_argument("--port", type=_port, default=0, metavar="PORT", help="else any free one")
+def _watch(add: Add) -> None:
+    add("job", help="name of the job, its deck, or any of its files")
+    add("-o", "--output", metavar="DIR", help="folder of the files (default: that of the job)")
+    add("--terminal", action="store_true", help="print lines instead of serving a page")
+    add("--open", action="store_true", help="open the page in a browser")
+    add("--port", type=_port, default=0, metavar="PORT", help="else any free one")
 
 
-def _view(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", help="result file")
-    parser.add_argument("-o", "--output", metavar="FILE", help="write a .png and open no window")
-    parser.add_argument("--field", default="", help="variable: MISES S11 U2 ...")
-    parser.add_argument(
-        "--scale", type=float, default=1.0, help="scale factor of the displacements"
-    )
+def _view(add: Add) -> None:
+    add("file", help="result file")
+    add("-o", "--output", metavar="FILE", help="write a .png and open no window")
+    add("--field", default="", help="variable: MISES S11 U2 ...")
+    add("--scale", type=float, default=1.0, help="scale factor of the displacements")
 
 
-def _info(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file")
-    _reading(parser)
+def _info(add: Add) -> None:
+    add("file")
+    _reading(add)
 
 
-def _convert(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("source")
-    parser.add_argument("target", nargs="?", help="the file extension selects the format")
-    parser.add_argument(
+def _convert(add: Add) -> None:
+    add("source")
+    add("target", nargs="?", help="the file extension selects the format")
+    add(
         "--paraview",
         action="store_true",
         help="write a script beside the results that shows them in ParaView",
     )
-    parser.add_argument("--field", default="", help="variable of the colors in ParaView")
-    parser.add_argument(
-        "--scale", type=float, default=1.0, help="scale factor of the displacements in ParaView"
-    )
-    _reading(parser)
+    add("--field", default="", help="variable of the colors in ParaView")
+    add("--scale", type=float, default=1.0, help="scale factor of the displacements in ParaView")
+    _reading(add)
 
 
-def _verify(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("names", nargs="*", metavar="NAME", help="names or patterns (default: all)")
-    parser.add_argument("--list", action="store_true", help="list the problems")
-    parser.add_argument(
-        "--full", action="store_true", help="also run the convergence studies (minutes)"
-    )
-    parser.add_argument(
-        "--pages", metavar="DIR", help="write a page for each problem (extra `plot`)"
-    )
-    parser.add_argument(
-        "--jobs", type=_count, metavar="N", help="number of processes (default: all cores)"
-    )
+def _verify(add: Add) -> None:
+    add("names", nargs="*", metavar="NAME", help="names or patterns (default: all)")
+    add("--list", action="store_true", help="list the problems")
+    add("--full", action="store_true", help="also run the convergence studies (minutes)")
+    add("--pages", metavar="DIR", help="write a page for each problem (extra `plot`)")
+    add("--jobs", type=_count, metavar="N", help="number of processes (default: all cores)")
 
 
-def _solver(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
+def _solver(add: Add) -> None:
+    add(
         "--solver",
         choices=SOLVERS,
         default=SOLVERS[0],
@@ -403,8 +349,8 @@ def _solver(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _reading(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
+def _reading(add: Add) -> None:
+    add(
         "--element",
         dest="elements",
         action="append",
@@ -413,7 +359,7 @@ def _reading(parser: argparse.ArgumentParser) -> None:
         type=_pair,
         help="replace an element type, such as CPS4=Q4D, repeatable",
     )
-    parser.add_argument(
+    add(
         "--parameter",
         dest="parameters",
         action="append",
@@ -422,7 +368,7 @@ def _reading(parser: argparse.ArgumentParser) -> None:
         type=_value,
         help="value of a *PARAMETER of the deck, repeatable",
     )
-    parser.add_argument(
+    add(
         "--stage",
         dest="stages",
         action="append",
@@ -431,16 +377,16 @@ def _reading(parser: argparse.ArgumentParser) -> None:
         help="measure a body in every increment: 'HUB axis=rotation point=0,0 MISES=400', "
         "repeatable",
     )
-    parser.add_argument(
+    add(
         "--as-written",
         action="store_true",
         help="use reduced integration as written: CPS4R becomes Q4R instead of Q4I",
     )
-    parser.add_argument("--lenient", action="store_true", help="treat unknown keywords as warnings")
-    parser.add_argument(
+    add("--lenient", action="store_true", help="treat unknown keywords as warnings")
+    add(
         "--allow-include", action="store_true", help="allow *INCLUDE outside the folder of the deck"
     )
-    parser.add_argument(
+    add(
         "--allow-library",
         dest="library",
         metavar="PATH",
@@ -564,5 +510,5 @@ def make_parser(words: Sequence[str]) -> Parser:
             made.add_argument(
                 "-v", "--verbose", action="count", default=0, help="more lines; -vv more"
             )
-            add_arguments(made)
+            add_arguments(made.add_argument)
     return parser
