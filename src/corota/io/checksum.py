@@ -1,4 +1,4 @@
-"""Arrays of result files with checksums: Fletcher's of 32 bits, as the filter of HDF5 has it.
+"""Checksums of arrays in result files: Fletcher's of 32 bits, as the filter of HDF5 has it.
 
 Source: J. G. Fletcher, *IEEE Trans. Commun.* 30 (1982) 247-252; HDF5, ``H5checksum.c``.
 """
@@ -6,12 +6,12 @@ Source: J. G. Fletcher, *IEEE Trans. Commun.* 30 (1982) 247-252; HDF5, ``H5check
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    pass
 
 #: Words that are summed at once; their weighted sum stays below 2^32.
 WORDS = 256
@@ -46,12 +46,3 @@ def fletcher32(data: bytes) -> int:
     zero = MODULUS if sums.any() else 0
     low, high = int(sums.sum()) % MODULUS, int(second.sum()) % MODULUS
     return (high or zero) << 16 | (low or zero)
-
-
-def store(group: Any, name: str, values: ArrayLike, level: int = 0) -> None:
-    """Write an array that does not change, with a checksum; `level` packs it."""
-    data = np.asarray(values)
-    packed = {"compression": "gzip", "compression_opts": level, "shuffle": True} if level else {}
-    # HDF5 has no empty chunks.
-    checked = {"chunks": data.shape, "fletcher32": True, **packed} if data.size else {}
-    group.create_dataset(name, data=data, **checked)

@@ -15,8 +15,6 @@ from corota.renamed import accept_old_names
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike
-
     from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
 
@@ -159,9 +157,3 @@ class StraightLine(Brief):
 
 
 Constraint = Equation | Coupling | StraightLine
-
-
-def rigid(nodes: str | ArrayLike, reference: int, name: str = "") -> Coupling:
-    """All dofs of nodes in rigid motion with a reference node, in any rotation."""
-    where = nodes if isinstance(nodes, str) else np.atleast_1d(np.asarray(nodes, np.int64))
-    return Coupling(where, int(reference), name=name)

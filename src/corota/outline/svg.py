@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 SKIPPED = ("defs", "clipPath", "mask", "marker", "pattern", "symbol", "metadata")
 #: Points along a Bezier curve.
 POINTS = 17
-#: Strokes that name no set.
-PLAIN = ("", "none", "black", "000", "000000")
 _LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _LENGTH = re.compile(r"\s*([-+.\deE]+)\s*([a-z]*)")
 

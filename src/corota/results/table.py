@@ -215,8 +215,6 @@ def _printed(name: str, text: str, dimension: str) -> Variable:
     return _number(name, text, dimension, title=title, block=name[:8])
 
 
-#: Dimensions that descriptions name.
-_SHOWN = ("length", "force", "force*length", "rad")
 #: Description of each component, size and invariant.
 MEANING: dict[str, str] = {
     name: text

@@ -126,7 +126,7 @@ class Reduced:
         real = np.array([system.from_nodes(shape) for shape in modes.shapes]).T
         basis = lin.pressed(lin.restrict(real))[lin.active]
         complex_ones = modes.imaginary is not None
-        self._mass = mass = lin.sub(lin.mass)
+        self._mass = lin.sub(lin.mass)
         if modes.imaginary is not None:
             other = np.array([system.from_nodes(shape) for shape in modes.imaginary]).T
             basis = self._orthonormal(
@@ -156,7 +156,6 @@ class Reduced:
         self.carried, self.dragged = basis.T @ inertia, basis.T @ drag
         if not step.residual and f.shape[1]:
             self._tell_missed(f, number)
-        self.mass_times_basis = mass @ basis
 
     def _orthonormal(self, x: Floats) -> Floats:
         """Orthonormal basis in the product of the mass."""

@@ -182,31 +182,9 @@ class Deck:
         *,
         text: str | None = None,
         hint: str = "",
+        severity: str = "error",
     ) -> None:
-        """Record an error; reading continues."""
-        self._record("error", card, where, message, text, hint)
-
-    def warning(
-        self,
-        card: Card | None,
-        where: Location | None,
-        message: str,
-        *,
-        text: str | None = None,
-        hint: str = "",
-    ) -> None:
-        """Record a warning."""
-        self._record("warning", card, where, message, text, hint)
-
-    def _record(
-        self,
-        severity: str,
-        card: Card | None,
-        where: Location | None,
-        message: str,
-        text: str | None,
-        hint: str,
-    ) -> None:
+        """Record an error, or a warning; reading continues."""
         if severity == "error" and len(self.diagnostics) >= MAX_DIAGNOSTICS:
             self.hidden += 1
             return
@@ -219,9 +197,8 @@ class Deck:
         name = numerals.clipped(card.spelled, 60) if card else ""
         message, hint = numerals.clipped(message), numerals.clipped(hint)
         found = Diagnostic(severity, message, where, name, text, hint)
-        if (
-            found not in self.diagnostics
-        ):  # errors of a part with several instances are reported once
+        # Errors of a part with several instances are reported once.
+        if found not in self.diagnostics:
             self.diagnostics.append(found)
 
     def row_error(self, card: Card, row: Row, index: int, message: str, hint: str = "") -> None:

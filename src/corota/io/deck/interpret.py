@@ -43,7 +43,8 @@ def interpret(deck: Deck, card: Card) -> None:
         if reason:
             deck.error(card, place, f"{parameter.name} is not supported", hint=reason)
         elif deck.lenient:
-            deck.warning(card, place, f"unknown parameter {parameter.name} is ignored")
+            text = f"unknown parameter {parameter.name} is ignored"
+            deck.error(card, place, text, severity="warning")
         else:
             hint = nearest(name, known | ignored)
             deck.error(card, place, f"unknown parameter {parameter.name}", hint=hint)
@@ -95,7 +96,8 @@ def _unknown(deck: Deck, card: Card) -> None:
         card.keyword, [*IGNORED, *UNSUPPORTED]
     )
     if deck.lenient:
-        deck.warning(card, card.where, f"unknown keyword {card.spelled} is ignored", hint=hint)
+        text = f"unknown keyword {card.spelled} is ignored"
+        deck.error(card, card.where, text, hint=hint, severity="warning")
     else:
         deck.error(card, card.where, f"unknown keyword {card.spelled[:60]}", hint=_pretty(hint))
 

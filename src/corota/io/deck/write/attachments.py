@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from corota.model.attachments import Dashpot
     from corota.model.loads import InitialVelocity
-    from corota.model.materials import Material
 
 
 def damping_card(rayleigh: tuple[float, float]) -> str:
@@ -55,11 +54,6 @@ def model_damping(writer: Writer, steps: Sequence[Step]) -> str:
 
 def _complex(step: Step) -> bool:
     return isinstance(step, Frequency) and step.complex_modes
-
-
-def material_damping(material: Material) -> str:
-    """The card of a material's own damping."""
-    return damping_card(material.rayleigh)
 
 
 def attachment_cards(writer: Writer) -> Iterator[str]:
