@@ -65,10 +65,3 @@ def colormap(name: str) -> Any:
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list(name, stops(name))
-
-
-__all__ = [
-    *("DARK_GROUND", "DARK_LINES", "GROUND", "LINES"),
-    *("DIVERGING", "MAPS", "NEGATIVE", "ONE_SIGN", "POSITIVE", "SEQUENTIAL"),
-    *("colormap", "map_of", "stops"),
-]

@@ -11,7 +11,7 @@ import numpy as np
 import corota._core as _core
 from corota.errors import InputError
 from corota.io.deck.lexer import READ
-from corota.io.gmsh.parse import NAMES, Parsed, Reader
+from corota.io.gmsh.parse import Parsed, Reader
 from corota.io.regular_file import read_bytes, require_regular
 from corota.mesh.data import Cells, Mesh
 from corota.mesh.kinds import KINDS
@@ -198,6 +198,3 @@ def _compact(mesh: Mesh, used: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Me
         mesh.edge_sets,
         notes,
     )
-
-
-__all__ = ["NAMES", "read_gmsh"]

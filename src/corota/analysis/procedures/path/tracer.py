@@ -592,6 +592,3 @@ def returned(tracer: PathTracer, before: Point, now: Point, origin: Point) -> bo
 
 def _arc_cosine(x: float) -> float:
     return math.acos(min(max(x, -1.0), 1.0))
-
-
-__all__ = ["End", "Increment", "PathStalled", "PathTracer", "Plan"]

@@ -282,18 +282,14 @@ class Sets:
         for name, labels, where in self.missing:
             self._say_undefined(labels, where, "node", name, key(name) not in used)
 
-    def _undefined(
-        self, indices: Ints, labels: Ints, where: Location, what: str, name: str
-    ) -> None:
-        self._say_undefined(labels[indices < 0], where, what, name, False)
-
     def _say_undefined(
-        self, bad: Ints, where: Location, what: str, name: str, harmless: bool
+        self, bad: Ints, where: Location, what: str, name: str, harmless: bool = False
     ) -> None:
         if len(bad):
             more = f" and {len(bad) - 1} others" if len(bad) > 1 else ""
-            say = self.deck.warning if self.deck.lenient or harmless else self.deck.error
-            say(None, where, f"{what} {bad[0]}{more} in set {name}: not defined in the deck")
+            text = f"{what} {bad[0]}{more} in set {name}: not defined in the deck"
+            severity = "warning" if self.deck.lenient or harmless else "error"
+            self.deck.error(None, where, text, severity=severity)
 
     def _node_surface(self, view: View, surface: Surface) -> Ints:
         parts = [_NONE]
@@ -301,7 +297,7 @@ class Sets:
             if numerals.is_label(row.target):
                 label = np.array([int(row.target)])
                 nodes = view.nodes(label)
-                self._undefined(nodes, label, row.where, "node", surface.name)
+                self._say_undefined(label[nodes < 0], row.where, "node", surface.name)
                 parts.append(nodes[nodes >= 0])
             else:
                 found = self._named_nodes(view, row.target, row.where)

@@ -278,16 +278,3 @@ def add_dashpot(
         model.dashpots.append(item)
     except InputError as error:
         deck.error(card, where, error.message)
-
-
-__all__ = [
-    "AttachedDraft",
-    "add_dashpot",
-    "build_attachments",
-    "damping_rows",
-    "dashpot",
-    "elements",
-    "gap",
-    "mass",
-    "rotary_inertia",
-]

@@ -452,13 +452,3 @@ def _spring(deck: Deck, draft: LineDraft, type_: str, cells: Ints) -> Section | 
     except InputError as error:
         deck.error(card, rows[0].where, error.message)
         return None
-
-
-__all__ = [
-    "LineDraft",
-    "beam_general_section",
-    "beam_section",
-    "build_lines",
-    "spring",
-    "truss_section",
-]

@@ -46,6 +46,3 @@ def pretension(deck: Deck, card: Card) -> None:
             return
         found.normal = (x / size, y / size)
     deck.pretensions.append(found)
-
-
-__all__ = ["PretensionDraft", "pretension"]
