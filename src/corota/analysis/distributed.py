@@ -298,7 +298,8 @@ class DistributedLoads:
             bulges.append((mask, self._core(load.faces[mask])[0]))
         from corota.analysis.following_forces import FollowingTraction
 
-        return FollowingTraction(self.system, nodes, thickness, load.traction, bulges)
+        ring = self._rings(load.faces)
+        return FollowingTraction(self.system, nodes, thickness, load.traction, bulges, ring)
 
     def _electrostatic(self, load: DistributedLoad) -> ElectrostaticPressure:
         """The attraction of edges by the opposite electrode."""
@@ -327,6 +328,9 @@ class DistributedLoads:
         chain, opposite = Edges(*self._edges(load.faces)), None
         if item.opposite is not None:
             opposite = Edges(*self._edges(self._faces(replace(item, edges=item.opposite))))
+        if self.system.axisymmetric and not self._rings(load.faces):
+            text = "a fluid penetrates between rings, not beside a section in the plane"
+            raise ModelError(text, item.where)
         start = self.system.model.mesh.node_indices(item.start)
         critical = item.value[1] if len(item.value) > 1 else None
         force = PenetratingPressure(self.system, chain, opposite, start, critical, item.where)
@@ -378,6 +382,19 @@ class DistributedLoads:
         local = EDGES[elements.find(block.section.element).cell][side]
         return [int(block.nodes[row, a]) for a in local], b
 
+    def _rings(self, faces: Ints) -> bool:
+        """Whether loaded edges are those of rings; sections in the plane have other edges."""
+        found = {
+            self.system.blocks[self._cells[cell][0]].section.axisymmetric
+            for cell in faces[:, 0].tolist()
+        }
+        if len(found) > 1:
+            raise ModelError(
+                "a load acts on edges of axisymmetric sections and of sections in the plane: give "
+                "each its own edge set"
+            )
+        return found == {True}
+
     def _edges(self, faces: Ints) -> tuple[Ints, Floats, Floats]:
         """Nodes (the third is the first on straight edges), their thickness, bulge of edges."""
         nodes, thickness, alpha = [], [], []
@@ -400,7 +417,7 @@ class DistributedLoads:
         """
         nodes, thickness, alpha = self._edges(faces)
         points = self.system.model.mesh.points
-        ring = self.system.axisymmetric
+        ring = self._rings(faces)
         if ring and presses:  # pressures act on the current way around, which the core knows
             thickness = np.ones_like(thickness)
         if heights:

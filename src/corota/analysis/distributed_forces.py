@@ -131,6 +131,12 @@ class BodyLoad:
                     f"material {name!r} has no density for a body force; add one (*DENSITY)",
                     item.where,
                 )
+            if item.kind == "centrifugal" and system.axisymmetric != block.section.axisymmetric:
+                raise ModelError(
+                    "the centrifugal load of an axisymmetric model acts about its axis, on rings; "
+                    "on a section in the plane it would act about a point",
+                    item.where,
+                )
             if item.kind == "line" and not elements.find(block.section.element).line:
                 label = mesh.cell_labels[block.cells[inside[block.cells]][0]]
                 raise ModelError(

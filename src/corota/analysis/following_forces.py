@@ -44,6 +44,8 @@ class FollowingTraction:
         the element on the left.
     bulges : list of (Bools, _core.EdgeLoads)
         Edges of drilling elements of one direction, by a mask of the edges.
+    ring : bool
+        Whether they are edges of axisymmetric sections.
     """
 
     follows = True
@@ -55,6 +57,7 @@ class FollowingTraction:
         thickness: Floats,
         value: tuple[float, ...],
         bulges: list[tuple[Bools, _core.EdgeLoads]],
+        ring: bool = False,
     ) -> None:
         self.system = system
         x = system.model.mesh.points[nodes]
@@ -72,7 +75,6 @@ class FollowingTraction:
             if size != 0.0:
                 self.bulged.append((size, Pressure(system, edges)))
             across[mask] = 0.0
-        ring = system.axisymmetric
         depth = np.full((len(nodes), 3), 2.0 * np.pi) if ring else thickness
         if not ring:
             shape = shape * np.einsum("ega,ea->eg", shape, depth)[..., None]

@@ -11,7 +11,7 @@ import numpy as np
 from corota.analysis.free_motion import plain
 from corota.arrays import distinct
 from corota.errors import Diagnostic
-from corota.mesh.parts import part_of_cells, stiff_part_of_cells
+from corota.mesh.parts import cells_of, nodes_of_cells, part_of_cells, stiff_part_of_cells
 from corota.model.released import without_releases
 from corota.model.rotations import rotating_nodes
 
@@ -61,11 +61,13 @@ def _held(model: Model, rotating: Bools) -> list[Floats]:
         _hold(model, now, step.supports)
         found.append(now.copy())
     found = found or [base]
+    mesh = model.mesh
+    rings = [cells_of(mesh, s.cells) for s in model.sections if s.axisymmetric]
     for held in found:
         held[:, 2] &= rotating
-        if any(section.axisymmetric for section in model.sections):
+        for cells in rings:
             # The hoop resists radial motion and turns in the plane.
-            held[:, 0] = True
+            held[nodes_of_cells(mesh, cells), 0] = True
     return found
 
 

@@ -1,7 +1,8 @@
 """Solids of revolution: x is the radius, y the axis; what a model of them may have.
 
-All sections of a body in the plane are axisymmetric, or none is. A ring has one rigid motion, along
-the axis: nodes on the axis and bodies without deformation are guided along it.
+Sections in plane stress beside rings are what interrupts the circumference, such as ribs or the
+webs between holes; their thickness is that of all of them together. A ring has one rigid motion,
+along the axis: nodes on the axis and bodies without deformation are guided along it.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from corota.arrays import Ints
     from corota.model.model import Model
+    from corota.model.sections import Section
 
 
 #: Radius that counts as zero, relative to the largest coordinate.
@@ -42,17 +44,35 @@ def is_axisymmetric(model: Model) -> bool:
         return False
     for section in model.sections:
         element = elements.find(section.element)
-        if not (section.axisymmetric or element.spring):
-            what = (
-                f"{section.element} elements would need a hoop strain, which lines have not"
-                if element.line
-                else f"a section in plane {section.plane} has another thickness than a ring"
-            )
-            raise ModelError(
-                f"an axisymmetric model takes axisymmetric sections and springs only: {what}",
-                section.where,
-            )
+        if section.axisymmetric or element.spring:
+            continue
+        if element.line:
+            what = f"{section.element} elements would need a hoop strain, which lines have not"
+        elif section.plane == "strain" and _joined(model, section, rings):
+            what = "a section in plane strain has no end around the axis; take plane stress"
+        else:
+            continue
+        raise ModelError(
+            "an axisymmetric model takes axisymmetric sections, springs, and plane stress for what "
+            f"interrupts the circumference: {what}",
+            section.where,
+        )
     return True
+
+
+def _joined(model: Model, section: Section, rings: list[Section]) -> bool:
+    """Whether a section has nodes of rings."""
+    mesh = model.mesh
+    nodes = [nodes_of_cells(mesh, cells_of(mesh, s.cells)) for s in (section, *rings)]
+    return bool(np.isin(nodes[0], np.concatenate(nodes[1:])).any())
+
+
+def in_the_plane(model: Model) -> list[Section]:
+    """Sections of bodies that are no rings."""
+    found = [s for s in model.sections if not s.axisymmetric]
+    return [
+        s for s in found if not (elements.find(s.element).line or elements.find(s.element).spring)
+    ]
 
 
 def nodes_on_axis(model: Model) -> Ints:
@@ -108,7 +128,16 @@ def check_constraints(model: Model) -> None:
             "a stage moves in the plane and turns in it; a ring moves along its axis only: take "
             "displacements and reactions of a node set"
         )
+    mesh = model.mesh
+    found = [cells_of(mesh, s.cells) for s in in_the_plane(model)]
+    ribs = nodes_of_cells(mesh, np.concatenate([np.zeros(0, np.int64), *found]))
     for item in model.constraints:
+        if isinstance(item, Coupling) and np.isin(mesh.node_indices(item.nodes), ribs).any():
+            raise ModelError(
+                "a coupling of an axisymmetric model moves along the axis only: it holds nodes of "
+                "rings, not those of sections in the plane",
+                item.where,
+            )
         if isinstance(item, StraightLine):
             raise ModelError(
                 "a straight line of nodes that turns is no motion of a ring: use equations",

@@ -531,14 +531,27 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
     depth = 0.5 * float(thickness.min()) if same else float(thickness.max())
     if item.itself:
         slave = along_contour(slave, mesh.points)
-    if master is not None and not system.axisymmetric:
-        slave.thickness[:] = joint_thickness(
-            mesh.points, slave.nodes, slave.thickness, master.nodes, master.thickness
-        )
+    if master is not None:
+        slave.thickness[:] = _joint(mesh.points, slave, master)
     core = core_of(mesh, item, slave, master, reach, depth)
     # A boundary that meets itself is both sides; a rigid master knows its own rotation.
     core.carry(carrier(system, slave), carrier(system, master or slave))
     return core, slave, master, reach, depth
+
+
+def _joint(points: Floats, slave: Surface, master: Surface) -> Floats:
+    """Thickness of the joint at the slave edges; 0 stands for a circumference.
+
+    A rib on a ring has the smaller of its thickness and the circumference.
+    """
+    if not (slave.thickness.any() or master.thickness.any()):
+        return slave.thickness
+    depths = []
+    for side in (slave, master):
+        around = 2.0 * np.pi * points[side.nodes[:, :2], 0].mean(axis=1)
+        depths.append(np.where(side.thickness == 0.0, around, side.thickness))
+    joint = joint_thickness(points, slave.nodes, depths[0], master.nodes, depths[1])
+    return np.where((slave.thickness == 0.0) & (joint == depths[0]), 0.0, joint)
 
 
 def core_of(

@@ -29,6 +29,7 @@ from corota.io.deck.elements import (
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.mesh.parts import nodes_of_cells
+from corota.model import axisymmetry
 from corota.model.hyperelastic import with_ratio
 from corota.model.local_strain import LocalStrain, dialect_strain
 from corota.model.sections import Plane, Section
@@ -143,6 +144,12 @@ class SectionBuilder:
         if any(view.scope.lines for view in self.meshes.views):
             rotating = self.targets.rotating
             build_lines(self.deck, self.model, self.meshes, self.sets, materials, rotating, owner)
+        if any(section.axisymmetric for section in self.model.sections):
+            for section in axisymmetry.in_the_plane(self.model):
+                self.deck.note(
+                    f"{section.where}: plane {section.plane} beside axisymmetric elements: the "
+                    "thickness is that around the whole circumference, as in CalculiX"
+                )
         bare = np.flatnonzero(owner == -1)
         if len(bare) and (drafts or self.deck.steps):
             label = self.mesh.cell_labels[bare[0]]
