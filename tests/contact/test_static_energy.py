@@ -150,6 +150,23 @@ def test_a_peak_that_an_increment_may_pass_is_noted(keep):
     assert sum("resolves the peak" in note for note in notes) == 1
 
 
+@pytest.mark.parametrize("angle", [90.0, 360.0])
+def test_no_peak_is_noted_on_a_plateau_or_in_rounding(angle):
+    """A press fit in four increments: the force of a quarter stays, that of a ring is 0."""
+    ring = ct.mesh.annulus(1.0, 2.01, 2, 24, angle=angle)
+    model = ct.Model(ring)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3))
+    hole = ct.RigidCurve.circle((0.0, 0.0), 2.0, inside=True)
+    model.contact("outer", hole, friction=0.2, name="hole")
+    if angle < 360.0:
+        model.fix("start", x=None)
+        model.fix("end", y=None)
+    else:
+        model.fix("inner")
+    notes = ct.solve(model, ct.Static(increments=4), threads=1).notes
+    assert not [note for note in notes if "resolves the peak" in note]
+
+
 @pytest.mark.parametrize("increments", [1, 5])
 def test_friction_energy_counts_only_the_part_of_a_bar_that_slips(increments: int) -> None:
     """Pulled by F on a rough floor (q per length): F^3 / 6 EA q, and F^3 / 24 EA q on release.

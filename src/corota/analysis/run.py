@@ -513,7 +513,8 @@ class Analysis:
         reaction = system.reaction(state.at) if state.reaction is None else state.reaction
         held = system.by_node(state.at.residual - reaction)
         if self.model.contacts and kind == "static":
-            forces = pair_forces(self.model.contacts, scalars)
+            pressure = 0.0 if contact is None else float(np.max(contact[:, 0], initial=0.0))
+            forces = pair_forces(self.model.contacts, scalars, pressure)
             self.pair_forces.append((number, state.step_time, forces))
         frame = Frame(
             number,
