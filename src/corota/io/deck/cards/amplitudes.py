@@ -1,8 +1,6 @@
 """Tables over time: amplitudes and time points."""
 
 # SPDX-License-Identifier: BSD-3-Clause
-
-# SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 import math

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from corota.io.deck.cards.step import keeps_preload, open_step, step_times
+from corota.io.deck.cards.step import keeps_preload, open_procedure, open_step, step_times
 from corota.io.deck.cards.supports import RATES
 from corota.io.deck.cards.thermal import initial_stress, initial_temperature
 from corota.io.deck.cards.tie import parameter_row
@@ -39,16 +39,8 @@ SCHEMES = {"HHT": "hht", "ENERGYMOMENTUM": "energy_momentum"}
 UNLIMITED_INCREMENTS = 10_000_000
 #: Largest tolerance of the local error: the displacement itself.
 ANY_ERROR = 1.0
-
-
-def _procedure(deck: Deck, card: Card) -> StepDraft | None:
-    now = open_step(deck, card)
-    if now is not None and now.procedure is not None:
-        deck.error(card, card.where, "the step already has a procedure")
-        return None
-    if now is not None:
-        now.procedure = card
-    return now
+#: Where cards of steps by modes stand.
+LATE = "it belongs after *MODAL DYNAMIC or *STEADY STATE DYNAMICS in the same step"
 
 
 def _grows(now: StepDraft) -> bool:
@@ -58,7 +50,7 @@ def _grows(now: StepDraft) -> bool:
 
 def dynamic(deck: Deck, card: Card) -> None:
     """``*DYNAMIC[, ALPHA=][, DIRECT][, EXPLICIT]``: increment, period, smallest, largest."""
-    now = _procedure(deck, card)
+    now = open_procedure(deck, card)
     if now is None:
         return
     now.direct = card.has("DIRECT") or card.has("DIRECTUSERCONTROL")
@@ -141,7 +133,7 @@ def complex_frequency(deck: Deck, card: Card) -> None:
 
 def frequency(deck: Deck, card: Card) -> None:
     """``*FREQUENCY``: the number of modes, the lowest and the highest frequency."""
-    now = _procedure(deck, card)
+    now = open_procedure(deck, card)
     if now is None:
         return
     rows = list(card.rows())
@@ -164,7 +156,7 @@ def frequency(deck: Deck, card: Card) -> None:
 
 def modal_dynamic(deck: Deck, card: Card) -> None:
     """``*MODAL DYNAMIC``: increment and period."""
-    now = _procedure(deck, card)
+    now = open_procedure(deck, card)
     if now is None:
         return
     now.make = ModalDynamic
@@ -176,7 +168,7 @@ def modal_dynamic(deck: Deck, card: Card) -> None:
 
 def steady_state(deck: Deck, card: Card) -> None:
     """``*STEADY STATE DYNAMICS[, DIRECT]``: range, points between modes, bias."""
-    now = _procedure(deck, card)
+    now = open_procedure(deck, card)
     if now is None:
         return
     rows = list(card.rows())
@@ -218,12 +210,8 @@ def base_motion(deck: Deck, card: Card) -> None:
     if now is None or not text or not amplitude:
         return
     if now.make not in (Dynamic, ModalDynamic, SteadyState):
-        deck.error(
-            card,
-            card.where,
-            "it belongs after *MODAL DYNAMIC or *STEADY STATE DYNAMICS in the same step",
-            hint="prescribe the motion of supports by *BOUNDARY in other steps",
-        )
+        hint = "prescribe the motion of supports by *BOUNDARY in other steps"
+        deck.error(card, card.where, LATE, hint=hint)
     elif card.value("LOADCASE") not in ("", "1"):
         message = "a base moves in phase here: LOAD CASE=1"
         deck.error(card, card.at("LOADCASE"), message, hint="shift the loads instead")
@@ -242,12 +230,8 @@ def modal_damping(deck: Deck, card: Card) -> None:
     if now is None:
         return
     if now.make not in (ModalDynamic, SteadyState):
-        deck.error(
-            card,
-            card.where,
-            "it belongs after *MODAL DYNAMIC or *STEADY STATE DYNAMICS in the same step",
-            hint="*DAMPING, ALPHA=, BETA= damps the other procedures",
-        )
+        hint = "*DAMPING, ALPHA=, BETA= damps the other procedures"
+        deck.error(card, card.where, LATE, hint=hint)
         return
     # Abaqus's words for what is the default.
     viscous = ("FRACTIONOFCRITICALDAMPING",)
@@ -314,8 +298,7 @@ def global_damping(deck: Deck, card: Card) -> None:
     if now is None:
         return
     if now.make not in (ModalDynamic, SteadyState):
-        text = "it belongs after *MODAL DYNAMIC or *STEADY STATE DYNAMICS in the same step"
-        deck.error(card, card.where, text)
+        deck.error(card, card.where, LATE)
         return
     deck.choice(card, "FIELD", ("ALL", "MECHANICAL"), "ALL")
     now.options["rayleigh"] = (

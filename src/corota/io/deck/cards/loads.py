@@ -1,8 +1,6 @@
 """Cards of loads on nodes, edges and bodies."""
 
 # SPDX-License-Identifier: BSD-3-Clause
-
-# SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 import math

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 from corota.errors import InputError
 from corota.io.deck.cards import step as inp_cards_step
-from corota.io.deck.cards.step import keeps_preload, open_step
+from corota.io.deck.cards.step import keeps_preload, open_procedure
 from corota.io.deck.lexer import Card, key
 from corota.model.paths import ArcLength, Label
 from corota.model.steps import Buckle
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
-    from corota.io.deck.drafts import StepDraft
 
 #: Values of *CONTROLS that are used here: position in its line, option of the step.
 _CONTROLS = {"FIELD": (0, "tolerance"), "TIMEINCREMENTATION": (4, "max_iterations")}
@@ -47,13 +46,10 @@ def _take_controls(deck: Deck) -> None:
 
 def _riks(deck: Deck, card: Card) -> None:
     """First arc, its scale, smallest, largest; ends: load factor; node, dof, displacement."""
-    now = open_step(deck, card)
+    now = open_procedure(deck, card)
     if now is None:
         return
-    if now.procedure is not None:
-        deck.error(card, card.where, "the step already has a procedure")
-        return
-    now.procedure, now.direct = card, card.has("DIRECT")
+    now.direct = card.has("DIRECT")
     rows = list(card.rows())
     if len(rows) > 1:
         deck.row_error(card, rows[1], 0, "one data line is expected")
@@ -102,13 +98,9 @@ def _riks(deck: Deck, card: Card) -> None:
 
 def buckle(deck: Deck, card: Card) -> None:
     """``*BUCKLE``: the number of factors; other entries control other solvers."""
-    now: StepDraft | None = open_step(deck, card)
+    now = open_procedure(deck, card)
     if now is None:
         return
-    if now.procedure is not None:
-        deck.error(card, card.where, "the step already has a procedure")
-        return
-    now.procedure = card
     rows = list(card.rows())
     count: int | None = 1
     if rows:
@@ -121,14 +113,9 @@ def buckle(deck: Deck, card: Card) -> None:
         if len(rows) > 1:
             deck.row_error(card, rows[1], 0, "one data line is expected")
             return
-    now.make, now.options = (
-        Buckle,
-        {
-            "modes": count,
-            "preload": keeps_preload(deck, card, now),
-            "dead_loads": True,
-        },
-    )
+    preload = keeps_preload(deck, card, now)
+    now.make = Buckle
+    now.options = {"modes": count, "preload": preload, "dead_loads": True}
 
 
 def controls(deck: Deck, card: Card) -> None:

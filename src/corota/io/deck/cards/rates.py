@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from corota.errors import InputError
 from corota.io.deck.cards.material import open_material
-from corota.io.deck.cards.step import open_step, step_times
+from corota.io.deck.cards.step import open_procedure, step_times
 from corota.io.deck.lexer import Card, key
 from corota.model.johnson_cook import JohnsonCook
 from corota.model.rates import CowperSymonds, Norton, YieldRatio
@@ -156,13 +156,10 @@ def heat_fraction(deck: Deck, card: Card) -> None:
 
 def visco(deck: Deck, card: Card) -> None:
     """``*VISCO[, CETOL=][, DIRECT]``: first increment, period, smallest and largest increment."""
-    now = open_step(deck, card)
+    now = open_procedure(deck, card)
     if now is None:
         return
-    if now.procedure is not None:
-        deck.error(card, card.where, "the step already has a procedure")
-        return
-    now.procedure, now.direct, now.make = card, card.has("DIRECT"), Visco
+    now.make, now.direct = Visco, card.has("DIRECT")
     step_times(deck, card, now)
     tolerance = deck.parameter_number(card, "CETOL", 0.0, 0.0) if card.has("CETOL") else None
     # Without AMPLITUDE=RAMP the loads of such a step act at once.

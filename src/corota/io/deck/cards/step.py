@@ -1,8 +1,6 @@
 """Cards of steps: begin, end and times."""
 
 # SPDX-License-Identifier: BSD-3-Clause
-
-# SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
@@ -110,16 +108,23 @@ def _perturb(deck: Deck, now: StepDraft) -> None:
     deck.note(f"{now.card.where}: PERTURBATION: {which}")
 
 
+def open_procedure(deck: Deck, card: Card) -> StepDraft | None:
+    """The open step with this card as its procedure; ``None`` after an error."""
+    now = open_step(deck, card)
+    if now is not None and now.procedure is not None:
+        deck.error(card, card.where, "the step already has a procedure")
+        return None
+    if now is not None:
+        now.procedure = card
+    return now
+
+
 def static(deck: Deck, card: Card) -> None:
     """Read ``*STATIC[, DIRECT]``: first increment, period, smallest and largest increment."""
-    now = open_step(deck, card)
-    if now is None:
-        return
-    if now.procedure is not None:
-        deck.error(card, card.where, "the step already has a procedure")
-        return
-    now.procedure, now.direct = card, card.has("DIRECT")
-    step_times(deck, card, now)
+    now = open_procedure(deck, card)
+    if now is not None:
+        now.direct = card.has("DIRECT")
+        step_times(deck, card, now)
 
 
 def step_times(deck: Deck, card: Card, now: StepDraft) -> None:
