@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     Complex = NDArray[np.complex128]
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+else:
+    # Annotations are not evaluated.
+    Bools = Complex = Floats = Ints = np.ndarray
 
 
 def distinct(values: ArrayLike) -> NDArray[Any]:

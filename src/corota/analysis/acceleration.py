@@ -3,13 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from corota.arrays import Floats
-
+from corota.arrays import Floats
 
 #: Corrections before the first one that is changed: an iteration that converges well ends earlier.
 PLAIN = 5

@@ -26,7 +26,7 @@ from corota.analysis.distributed_forces import (
     Traction,
     hydrostatic_thickness,
 )
-from corota.arrays import distinct
+from corota.arrays import Bools, Floats, Ints, distinct
 from corota.errors import InputError, Location, ModelError
 from corota.mesh.kinds import EDGES
 from corota.model import axisymmetry, elements
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from corota.analysis.following_forces import FollowingTraction
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.penetration import PenetratingPressure
-    from corota.arrays import Bools, Floats, Ints
 
     Item = EdgeLoad | BodyForce | NodalForce
 

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Floats, Ints, distinct
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
     from corota.analysis.numbered_model import NumberedModel
-    from corota.arrays import Floats, Ints
     from corota.mesh.data import Mesh
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from corota.analysis.linear.factor import Factor
 from corota.analysis.terms.linearized import Linearized
-from corota.arrays import distinct
+from corota.arrays import Floats, Ints, distinct
 from corota.errors import InputError, ModelError, SingularError
 from corota.model.stages import FATIGUE, Stage
 from corota.results.averaging import Averaging, section_of_cells
@@ -20,7 +20,6 @@ from corota.results.table import NODAL, variables
 
 if TYPE_CHECKING:
     from corota.analysis.equations import System
-    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.results.frame import Frame
 

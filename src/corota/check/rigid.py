@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.free_motion import plain
-from corota.arrays import distinct
+from corota.arrays import Bools, Floats, Ints, distinct
 from corota.errors import Diagnostic
 from corota.mesh.parts import cells_of, nodes_of_cells, part_of_cells, stiff_part_of_cells
 from corota.model.released import without_releases
 from corota.model.rotations import rotating_nodes
 
 if TYPE_CHECKING:
-    from corota.arrays import Bools, Floats, Ints
     from corota.mesh.data import Mesh
     from corota.model.loads import Fixed
     from corota.model.model import Model

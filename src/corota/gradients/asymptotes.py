@@ -8,17 +8,13 @@ Numer. Meth. Engng 24 (1987) 359-373, by the package mmapy.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from corota.arrays import Floats
 from corota.errors import InputError, ResourceError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from corota.arrays import Floats
-
 
 #: Cost of a violated constraint over its scaled value: above that of the objective.
 COST = 1e3

@@ -7,15 +7,11 @@ state, never solutions of an iteration: with steps of 1e-3 of a variable the err
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from corota.arrays import Floats
-
+from corota.arrays import Floats
 
 #: Offsets in steps, and the factors of the values there.
 STENCIL = ((1, 2.0 / 3.0), (-1, -2.0 / 3.0), (2, -1.0 / 12.0), (-2, 1.0 / 12.0))

@@ -5,15 +5,12 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, overload
+from typing import overload
 
 import numpy as np
 
+from corota.arrays import Floats
 from corota.errors import InputError
-
-if TYPE_CHECKING:
-    from corota.arrays import Floats
-
 
 #: Bytes of the unit in which the bound is given [MB].
 MEGABYTE = 1e6

@@ -6,14 +6,11 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from corota.errors import FileError
 from corota.io.atomic_file import full
 from corota.io.regular_file import open_to_write
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 try:
     import fcntl

@@ -4,15 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
 from corota.errors import InputError
 from corota.results.results import Frame, Results
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def as_results(results: Results) -> Results:

@@ -3,15 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from corota.arrays import Ints
 from corota.errors import InputError
 from corota.mesh.data import Cells, Mesh
-
-if TYPE_CHECKING:
-    from corota.arrays import Ints
 
 
 def assembly(**bodies: Mesh) -> Mesh:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Bools, Floats, Ints, distinct
 from corota.errors import InputError
 from corota.mesh.data import Cells, Mesh
 from corota.mesh.kinds import EDGES
@@ -16,8 +16,6 @@ from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from corota.arrays import Bools, Floats, Ints
 
 
 _SPLIT = {

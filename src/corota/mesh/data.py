@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Bools, Floats, Ints, distinct
 from corota.display import CELLS_DRAWN, Brief, picture, table
 from corota.errors import InputError
 from corota.lazy import lazy
@@ -19,8 +19,6 @@ from corota.names import choose, did_you_mean, listed, match
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from corota.arrays import Bools, Floats, Ints
 
 
 # Conveniences: functions of higher layers, which load at their first call.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 import corota._core as _core
-from corota.arrays import distinct
+from corota.arrays import Floats, Ints, distinct
 from corota.errors import InputError
 from corota.mesh.change import merge, placed_middles
 from corota.mesh.data import Cells, Mesh
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import ArrayLike
-
-    from corota.arrays import Floats, Ints
 
     Curve = Callable[[float], Sequence[float]]
     Kind = Literal["tri3", "tri6", "quad4", "quad8", "quad9"]

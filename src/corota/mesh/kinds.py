@@ -5,12 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from corota.arrays import Floats
+from corota.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Bools, Ints, distinct
 from corota.mesh.kinds import EDGES
 
 if TYPE_CHECKING:
-    from corota.arrays import Bools, Ints
     from corota.mesh.data import Mesh
 
 

@@ -3,13 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from corota.arrays import Bools, Floats
-
+from corota.arrays import Bools, Floats
 
 #: Distance from the plane that counts as rounding, relative to the size of the part.
 FLAT = 1e-6

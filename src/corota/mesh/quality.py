@@ -3,16 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from corota.arrays import Bools, Floats, Ints
 from corota.mesh.kinds import KINDS
 from corota.mesh.shape_functions import shape_gradients
-
-if TYPE_CHECKING:
-    from corota.arrays import Bools, Floats, Ints
-
 
 #: Smallest corner sine, relative to the lengths of its sides, that counts as not straight.
 STRAIGHT = 1e-12

@@ -3,14 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from corota.arrays import Floats
 from corota.mesh.kinds import KINDS, monomials
-
-if TYPE_CHECKING:
-    from corota.arrays import Floats
 
 
 def shape_functions(kind: str, at: Floats) -> Floats:

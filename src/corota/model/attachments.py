@@ -4,15 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import Ints
 from corota.display import Brief
 from corota.errors import InputError, Location
-
-if TYPE_CHECKING:
-    from corota.arrays import Ints
 
 
 @dataclass(repr=False)

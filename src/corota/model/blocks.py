@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Floats, Ints, distinct
 from corota.errors import ModelError
 from corota.mesh.kinds import EDGES
 from corota.model import elements
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.model.sections import Section
     from corota.model.steps import Step

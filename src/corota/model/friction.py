@@ -4,19 +4,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import Floats
 from corota.display import Brief
 from corota.errors import InputError, number
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from corota.arrays import Floats
-
 
 #: Largest friction coefficient: no pressure lets surfaces slip with it.
 MOST_FRICTION = 1e6

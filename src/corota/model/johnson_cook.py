@@ -5,15 +5,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+from corota.arrays import Floats
 from corota.errors import InputError
 from corota.model.material_table import MaterialTable
 from corota.model.materials import _positive, isotropic_compliance
 from corota.model.single_point import LawOfTheCore
-
-if TYPE_CHECKING:
-    from corota.arrays import Floats
 
 
 @dataclass

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Floats, Ints, distinct
 from corota.errors import Diagnostic
 from corota.mesh.kinds import EDGES
 from corota.mesh.parts import cells_of, part_of_cells
@@ -18,7 +18,6 @@ from corota.model.material_table import MaterialTable
 from corota.model.materials import Elastic
 
 if TYPE_CHECKING:
-    from corota.arrays import Floats, Ints
     from corota.mesh.data import Mesh
     from corota.model.model import Model
     from corota.model.sections import Section

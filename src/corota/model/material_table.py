@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Floats, distinct
 from corota.errors import InputError, number
 from corota.model.materials import Expansion, Material
 from corota.model.plasticity import Mises, Voce
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike
-
-    from corota.arrays import Floats
 
 
 #: Data of a material other than the constants of its law.

@@ -4,20 +4,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
+from corota.arrays import Floats
 from corota.display import Brief
 from corota.errors import InputError, Location
 from corota.model.materials import _positive, isotropic_compliance
 from corota.model.rates import Norton, Rate, RateCurves
 from corota.model.single_point import LawOfTheCore
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from corota.arrays import Floats
-
 
 #: Largest number of back-stresses of a material.
 MAX_BACK_STRESSES = 6

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -12,11 +14,6 @@ from corota.errors import FileError, ResourceError
 from corota.io.regular_file import require_regular
 from corota.outline.curves import Curve, arc, bulge, circle, line, spline
 from corota.outline.drawing import Drawing, Text
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
-    from pathlib import Path
-
 
 #: Unit of each number of ``$INSUNITS`` that has a name here.
 UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 13: "um"}

@@ -4,16 +4,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from corota.errors import InputError
 from corota.io.regular_file import require_regular
 from corota.outline.curves import Curve, arc, line, spline
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 #: Formats that the kernel reads.
 SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")

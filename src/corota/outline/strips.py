@@ -4,20 +4,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import Floats, Ints
 from corota.outline.curves import Curve
 from corota.outline.loops import Loops, area, contains
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from corota.arrays import Floats, Ints
-
 
 #: Length over thickness from which a member is meshed in rows, and the largest length of its cells
 #: over their height.

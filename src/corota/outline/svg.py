@@ -5,22 +5,17 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Collection, Iterator
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 
+from corota.arrays import Floats
 from corota.errors import FileError, ResourceError
 from corota.io.regular_file import require_regular
 from corota.outline.curves import Curve, arc, line, spline
 from corota.outline.drawing import Drawing
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator
-    from pathlib import Path
-
-    from corota.arrays import Floats
-
 
 #: Elements that draw nothing where they stand.
 SKIPPED = ("defs", "clipPath", "mask", "marker", "pattern", "symbol", "metadata")

@@ -3,10 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from os import PathLike
+from typing import Any
 
 import numpy as np
 
+from corota.arrays import Floats, Ints
 from corota.mesh import EDGES, Mesh
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, applied
 from corota.model.model import Model
@@ -23,12 +25,6 @@ from corota.plots.lines import draw_lines
 from corota.plots.rigid import draw_rigid, with_rigid
 from corota.plots.surface import edge_lines, outline, surface
 from corota.results.averaging import section_of_cells
-
-if TYPE_CHECKING:
-    from os import PathLike
-
-    from corota.arrays import Floats, Ints
-
 
 #: Colors of sections, pale enough for symbols above them.
 SHADES = ("#dbe7f3", "#fbe6d3", "#dcefe4", "#f3e0ec", "#f8efc9", "#e4e4ea")

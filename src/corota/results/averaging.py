@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Bools, Floats, Ints, distinct
 from corota.mesh.kinds import KINDS
 from corota.model.element_changes import groups_of_cells
 from corota.results.table import COMPONENTS, INVARIANTS, POSITIVE
 from corota.results.variables import STORED, averaged_value, invariant, stored_as
 
 if TYPE_CHECKING:
-    from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.results.frame import Frame, PointFields

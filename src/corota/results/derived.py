@@ -7,15 +7,12 @@ variables at points are: in histories, pictures, tables and result files.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
+from corota.arrays import Floats
 from corota.errors import InputError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from corota.arrays import Floats
 
 
 class PointValues(Protocol):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Bools, Floats, Ints, distinct
 from corota.errors import InputError
 from corota.results.table import NODAL, variables
 from corota.results.variables import match_name, point_value
@@ -16,7 +16,6 @@ from corota.results.variables import match_name, point_value
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from corota.arrays import Bools, Floats, Ints
     from corota.results.frame import Frame, PointFields
     from corota.results.source import ResultSource
 

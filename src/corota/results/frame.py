@@ -3,15 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
+from corota.arrays import Bools, Floats, Ints
 from corota.display import Brief
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from corota.arrays import Bools, Floats, Ints
 
 
 @dataclass(repr=False)

@@ -8,15 +8,12 @@ stages. It is computed from averaged or interpolated components wherever these a
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from corota.arrays import Floats
+from corota.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -8,17 +8,13 @@ result files and in tables, whatever comes later. Definitions are in docs/measur
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from corota.arrays import Floats
-
+from corota.arrays import Floats
 
 #: Rotation between two frames [rad] below which a center of rotation has no place.
 LEAST_ROTATION = 1e-9

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Bools, Floats, Ints, distinct
 from corota.display import Brief
 from corota.errors import InputError
 from corota.lazy import lazy
@@ -23,7 +23,6 @@ from corota.results.history import History
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
     from corota.results.frame import Frame
     from corota.results.source import ResultSource

@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from corota.arrays import Floats
+from corota.arrays import Floats
 
 
 def random_path(seed: int, corners: int = 11, steps: int = 6, size: float = 0.004) -> Floats:

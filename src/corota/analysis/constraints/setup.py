@@ -9,7 +9,7 @@ import numpy as np
 
 from corota.analysis.constraints.relations import Follow, LinearRelation, Mean, Relation
 from corota.analysis.constraints.straight_line import OnLine
-from corota.arrays import distinct
+from corota.arrays import Bools, Floats, Ints, distinct
 from corota.errors import Location, ModelError
 from corota.model.constraints import Coupling, Equation, StraightLine
 from corota.model.contact import RigidCurve, is_gap, of_gap
@@ -17,7 +17,6 @@ from corota.model.contact import RigidCurve, is_gap, of_gap
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.arrays import Bools, Floats, Ints
     from corota.model.model import Model
 
 

@@ -5,16 +5,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.analysis.constraints.relations import Relation
 from corota.analysis.failure import ElementFailure
-
-if TYPE_CHECKING:
-    from corota.arrays import Floats
-
+from corota.arrays import Floats
 
 #: The axis of the dependent displacement may come this close to the line (sine of the angle).
 CLOSEST = 1e-3

@@ -10,15 +10,11 @@ Source: R. G. Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from corota.arrays import Floats
-
+from corota.arrays import Floats
 
 #: Vectors in a block: a double eigenvalue is found together.
 BLOCK = 2

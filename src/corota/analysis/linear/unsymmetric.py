@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.linear.solvers import Multifrontal
-from corota.arrays import distinct
+from corota.arrays import Bools, Floats, Ints, distinct
 
 if TYPE_CHECKING:
     from corota.analysis.linear.matrix import SymmetricPattern
     from corota.analysis.linear.types import Index, Sparse
-    from corota.arrays import Bools, Floats, Ints
 
 
 class FullMatrix:

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Floats, distinct
 from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
     from corota.analysis.equations import System
-    from corota.arrays import Floats
 
 
 #: A body that turns by more in an increment starts from where it is [rad].

@@ -3,12 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from corota.arrays import Floats
+from corota.arrays import Floats
 
 
 def _skew(v: Floats) -> Floats:

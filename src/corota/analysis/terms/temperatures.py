@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.load_history import LoadHistory
-from corota.arrays import distinct
+from corota.arrays import Floats, distinct
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.load_factors import LoadFactors
-    from corota.arrays import Floats
     from corota.model.loads import Temperature
 
 

@@ -3,10 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from os import PathLike
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from corota.arrays import Floats, Ints
 from corota.errors import FileError, UnsupportedError
 from corota.io.frd.layout import NAMES, NODES
 from corota.io.regular_file import read_bytes
@@ -16,12 +19,6 @@ from corota.model.model import Model
 from corota.results.results import Frame, Results
 from corota.results.table import requests
 from corota.results.variables import stored_as
-
-if TYPE_CHECKING:
-    from os import PathLike
-    from pathlib import Path
-
-    from corota.arrays import Floats, Ints
 
 
 class _Source:

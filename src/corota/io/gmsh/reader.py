@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 import corota._core as _core
+from corota.arrays import Floats, Ints
 from corota.errors import InputError
 from corota.io.deck.lexer import READ
 from corota.io.gmsh.parse import Parsed, Reader
@@ -17,9 +17,6 @@ from corota.mesh.data import Cells, Mesh
 from corota.mesh.kinds import KINDS
 from corota.mesh.plane import into_plane
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, classify
-
-if TYPE_CHECKING:
-    from corota.arrays import Floats, Ints
 
 #: Default names of physical groups, as Gmsh writes them into decks.
 _UNNAMED = {0: "PhysicalPoint", 1: "PhysicalLine", 2: "PhysicalSurface"}

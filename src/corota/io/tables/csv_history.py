@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Ints, distinct
 from corota.errors import FileError, InputError
 from corota.io.atomic_file import TextFile, full, replace_text
 from corota.model.units import Units
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from corota.arrays import Ints
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.frame import Frame

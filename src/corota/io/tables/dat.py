@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Floats, Ints, distinct
 from corota.errors import InputError
 from corota.io.tables.dat_contact import VARIABLES as CONTACT_VARIABLES
 from corota.io.tables.dat_contact import contact_tables
@@ -25,7 +25,6 @@ from corota.results.variables import invariant
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.model.steps import Output, Step
     from corota.results.results import Frame, PointFields

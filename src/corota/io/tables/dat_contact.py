@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Floats, Ints, distinct
 from corota.io.tables.dat_numbers import fortran, rows
 from corota.model.contact import ContactPair, RigidCurve, edges_or_nodes, joint_thickness
 from corota.model.sections import thickness_at
@@ -20,7 +20,6 @@ from corota.model.sections import thickness_at
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.model.steps import Output
     from corota.results.results import Frame

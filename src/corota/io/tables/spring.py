@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
@@ -11,10 +11,6 @@ from corota.errors import InputError
 from corota.io.atomic_file import replace_text
 from corota.results.measures import COMPONENTS
 from corota.results.stage_results import STILL, StageResults
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
 
 #: Dofs of the components in decks, and their names.
 DOFS = {"x": 1, "y": 2, "rotation": 6}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Floats, Ints, distinct
 from corota.io.finite import check
 from corota.results import variables as vf
 from corota.results.averaging import (
@@ -20,7 +20,6 @@ from corota.results.averaging import (
 from corota.results.table import CONTACT, INVARIANTS, TABLE, TENSORS
 
 if TYPE_CHECKING:
-    from corota.arrays import Floats, Ints
     from corota.model.model import Model
     from corota.results.results import Frame
 

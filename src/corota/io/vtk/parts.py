@@ -9,14 +9,10 @@ are no cells of the mesh: they follow the last part.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
-
-if TYPE_CHECKING:
-    from corota.arrays import Ints
+from corota.arrays import Ints, distinct
 
 
 class Parts:

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
+from corota.arrays import Floats, Ints
 from corota.errors import FileError
 from corota.io.regular_file import read_bytes
 from corota.io.vtk.grid import POLY_LINE, VTK_TYPES
@@ -26,9 +27,6 @@ _OWN = {row.stored for row in TABLE.values() if row.frame}
 
 #: Forces that a file may leave out.
 _FORCES = {"RF": "reaction", "F": "external force"}
-
-if TYPE_CHECKING:
-    from corota.arrays import Floats, Ints
 
 
 def read_vtk_xml(path: Path) -> Results:

@@ -13,12 +13,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from corota.analysis.path_system import product
-
-if TYPE_CHECKING:
-    from corota.arrays import Bools, Floats, Ints
+from corota.arrays import Bools, Floats, Ints
 
 
 class Control(Protocol):

@@ -9,16 +9,11 @@ on. At a corner of a nonlinear spring the sum alone determines it.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from corota.analysis.path_system import Metric, PathSystem, Point, Tangent
 from corota.analysis.procedures.path.corrector import tangent_at
-
-if TYPE_CHECKING:
-    from corota.arrays import Floats
-
+from corota.arrays import Floats
 
 #: Cosine from which two directions determine each other's orientation.
 MIN_COSINE = 0.5

@@ -6,13 +6,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from corota.arrays import distinct
+from corota.arrays import Floats, distinct
 from corota.mesh.parts import cells_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from corota.arrays import Floats
     from corota.model.model import Model
     from corota.model.sections import Section
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Ints, distinct
 from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
 from corota.io.deck.elements import SHELLS
@@ -21,7 +21,6 @@ from corota.model.loads import BodyForce, EdgeLoad, Fixed, Load, NodalForce, Tem
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from corota.arrays import Ints
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import Draft, StepDraft
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Floats, Ints, distinct
 from corota.errors import InputError
 from corota.io.deck.build.materials import build_material
 from corota.io.deck.build.mesh import View, views_in
@@ -37,7 +37,6 @@ from corota.model.sections import Plane, Section
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from corota.arrays import Floats, Ints
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import SectionDraft
     from corota.model.materials import Material

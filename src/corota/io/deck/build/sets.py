@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
+from corota.arrays import Ints, distinct
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import MeshBuilder, View, view_of
 from corota.io.deck.deck import nearest
@@ -20,7 +20,6 @@ from corota.mesh.kinds import EDGES
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from corota.arrays import Ints
     from corota.errors import Location
     from corota.io.deck.drafts import NamedSet, Surface, SurfaceRow
     from corota.mesh.data import Mesh

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota import profiles
-from corota.arrays import distinct
+from corota.arrays import Ints, distinct
 from corota.errors import InputError
 from corota.io.deck.drafts import LineDraft, SectionDraft
 from corota.io.deck.elements import LINE_ELEMENTS
@@ -20,7 +20,6 @@ from corota.model.sections import Section
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from corota.arrays import Ints
     from corota.io.deck.build.mesh import MeshBuilder
     from corota.io.deck.build.sets import Sets
     from corota.io.deck.deck import Deck

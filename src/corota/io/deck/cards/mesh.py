@@ -3,11 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 
 from corota._core import parse_labels, parse_nodes, parse_table
+from corota.arrays import Ints
 from corota.errors import Location
 from corota.io.deck import numerals
 from corota.io.deck.deck import Deck, int_array, nearest
@@ -24,12 +25,6 @@ from corota.io.deck.elements import (
 from corota.io.deck.lexer import Card, Chunk, Row, key, split_row
 from corota.lazy import lazy
 from corota.mesh.kinds import N_NODES
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from corota.arrays import Ints
-
 
 # Functions of cards that few decks have.
 attached_elements = lazy("corota.io.deck.cards.attachments:elements")
