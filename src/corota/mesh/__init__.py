@@ -19,26 +19,17 @@ if TYPE_CHECKING:
 
     outline: Any
 
-#: Module of each name; that of `outline` is of a higher layer.
-_HOMES = {
-    "EDGES": "kinds",
-    "N_NODES": "kinds",
-    "Cells": "data",
-    "Mesh": "data",
-    "annulus": "generate",
-    "distort": "generate",
-    "line": "generate",
-    "mapped": "generate",
-    "merge": "change",
-    "move": "change",
-    "outline": ".outline.mesher",
-    "random_field": "random_fields",
-    "read": "files",
-    "rectangle": "generate",
-    "renumber": "change",
-    "to_quadratic": "change",
-    "to_triangles": "change",
+#: Names of each module; that of `outline` is of a higher layer.
+_NAMES = {
+    ".outline.mesher": "outline",
+    "change": "merge move renumber to_quadratic to_triangles",
+    "data": "Cells Mesh",
+    "files": "read",
+    "generate": "annulus distort line mapped rectangle",
+    "kinds": "EDGES N_NODES",
+    "random_fields": "random_field",
 }
+_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
 
 __all__ = [
     "EDGES",
