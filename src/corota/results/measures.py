@@ -145,41 +145,11 @@ def _inverse_of(matrix: Floats) -> Floats:
 # -- functions of a path: the value in its last frame, NaN where it has none ---------------
 
 
-def motion(path: StagePath, component: int) -> float:
-    """A component of the motion."""
-    return float(path.motion[-1, component])
-
-
-def place(path: StagePath, component: int) -> float:
-    """A coordinate of the reference point."""
-    return float(path.place[component])
-
-
-def force(path: StagePath, component: int) -> float:
-    """A component of the force."""
-    return float(path.force[-1, component])
-
-
-def travel(path: StagePath) -> float:
-    """Wanted motion."""
-    return float(path.travel[-1])
-
-
-def load(path: StagePath) -> float:
-    """Force along the wanted motion."""
-    return float(path.load[-1])
-
-
 def parasitic_translation(path: StagePath) -> float:
     """Displacement across the wanted one, to its left; of a rotation the whole displacement."""
     if path.turns:
         return float(np.hypot(*path.motion[-1, :2]))
     return float(path.motion[-1] @ path.across)
-
-
-def parasitic_rotation(path: StagePath) -> float:
-    """Rotation, where a translation is wanted."""
-    return math.nan if path.turns else float(path.motion[-1, 2])
 
 
 def instant_center(path: StagePath) -> Floats:
@@ -205,26 +175,6 @@ def instant_center(path: StagePath) -> Floats:
     return np.asarray(path.place + np.array([-rate[1], rate[0]]))
 
 
-def center(path: StagePath, component: int) -> float:
-    """A coordinate of the instant center."""
-    return float(instant_center(path)[component])
-
-
-def center_shift(path: StagePath) -> float:
-    """Distance of the instant center from the undeformed reference point."""
-    return float(np.hypot(*(instant_center(path) - path.reference)))
-
-
-def stiffness(path: StagePath, i: int, j: int) -> float:
-    """An entry of the tangent stiffness."""
-    return float(path.stiffness[-1, i, j])
-
-
-def compliance(path: StagePath, i: int, j: int) -> float:
-    """An entry of its inverse."""
-    return float(path.compliance[-1, i, j])
-
-
 def axis_stiffness(path: StagePath) -> float:
     """Stiffness along the wanted motion: load per travel, with the supports of the stage."""
     return _inverse(float(path.direction @ path.guided[-1] @ path.direction))
@@ -241,11 +191,6 @@ def lateral_stiffness(path: StagePath) -> float:
     return _inverse(float(np.linalg.eigvalsh(0.5 * (plane + plane.T))[-1]))
 
 
-def stiffness_ratio(path: StagePath) -> float:
-    """Lateral stiffness over axis stiffness."""
-    return lateral_stiffness(path) * _inverse(axis_stiffness(path))
-
-
 def lateral_coupling(path: StagePath) -> float:
     """Lateral motion per wanted motion under a small load along the axis."""
     column = path.guided[-1] @ path.direction
@@ -259,67 +204,18 @@ def rotation_coupling(path: StagePath) -> float:
     return math.nan if path.turns else float(column[2]) * _inverse(float(path.direction @ column))
 
 
-def elastic_center(path: StagePath, component: int) -> float:
+def elastic_center(path: StagePath, k: int) -> float:
     """A coordinate of the point that stays where it is under a small moment."""
     inverse = path.guided[-1]
-    arm = (-inverse[1, 2], inverse[0, 2])[component] * _inverse(float(inverse[2, 2]))
-    return float(path.place[component] + arm)
-
-
-def work(path: StagePath) -> float:
-    """Work of the forces on the stage."""
-    return float(path.work[-1])
-
-
-def insertion_load(path: StagePath) -> float:
-    """Largest load against the motion while the travel grows."""
-    return _resistance(path, 1.0)
-
-
-def retention_load(path: StagePath) -> float:
-    """Largest load against the motion while the travel shrinks."""
-    return _resistance(path, -1.0)
+    arm = (-inverse[1, 2], inverse[0, 2])[k] * _inverse(float(inverse[2, 2]))
+    return float(path.place[k] + arm)
 
 
 def _resistance(path: StagePath, way: float) -> float:
+    """Largest load against the motion while the travel grows (1) or shrinks (-1)."""
     sense = way * _sense(path)
     moved = np.flatnonzero(sense * np.diff(path.travel) > 0.0) + 1
     return float((sense * path.load[moved]).max()) if len(moved) else math.nan
-
-
-def largest_load(path: StagePath) -> float:
-    """Largest load so far."""
-    return float(path.load.max())
-
-
-def smallest_load(path: StagePath) -> float:
-    """Smallest load so far."""
-    return float(path.load.min())
-
-
-def snap(path: StagePath, what: int) -> float:
-    """Travel (0) or load (1) at the first limit load."""
-    return _limits(path)[0][what]
-
-
-def back(path: StagePath, what: int) -> float:
-    """Travel (0) or load (1) at the limit load of the way back."""
-    return _limits(path)[1][what]
-
-
-def switching_travel(path: StagePath) -> float:
-    """Travel of the unstable equilibrium without load."""
-    return _zeros(path)[0][0]
-
-
-def switching_energy(path: StagePath) -> float:
-    """Work up to the unstable equilibrium without load."""
-    return _zeros(path)[0][1]
-
-
-def second_equilibrium(path: StagePath) -> float:
-    """Travel of the second stable equilibrium without load."""
-    return _zeros(path)[1][0]
 
 
 def return_energy(path: StagePath) -> float:
@@ -349,16 +245,6 @@ def efficiency(path: StagePath) -> float:
     return float(-path.work[-1] / path.input.work[-1])
 
 
-def utilization(path: StagePath, column: int) -> float:
-    """Largest share of an allowable that is used (0), or its element (1), x (2) or y (3)."""
-    return float(path.utilization[-1, column])
-
-
-def safety_factor(path: StagePath) -> float:
-    """Allowable over what is used."""
-    return _inverse(float(path.utilization[-1, 0]))
-
-
 def travel_to_allowable(path: StagePath) -> float:
     """Travel at which an allowable is reached first, linear between the frames."""
     at = _exceeded(path)
@@ -370,10 +256,10 @@ def travel_to_allowable(path: StagePath) -> float:
     return float(first + share * (last - first))
 
 
-def allowable_place(path: StagePath, column: int) -> float:
+def allowable_place(path: StagePath, k: int) -> float:
     """Element (1), x (2) or y (3) where an allowable is exceeded first."""
     at = _exceeded(path)
-    return math.nan if at < 0 else float(path.utilization[at, column])
+    return math.nan if at < 0 else float(path.utilization[at, k])
 
 
 def _exceeded(path: StagePath) -> int:
@@ -478,59 +364,76 @@ def _matrix(
 
 
 def _each(
-    value: Callable[..., float], *rows: tuple[str, str, str], of: str = "component", first: int = 0
+    value: Callable[..., float], *rows: tuple[str, str, str], first: int = 0
 ) -> dict[str, StageMeasure]:
-    """Measures of one function by the number of a column."""
+    """Measures of one function by the number `k` of a column."""
     return {
-        name: StageMeasure(partial(value, **{of: first + k}), meaning, dimension)
-        for k, (name, meaning, dimension) in enumerate(rows)
+        name: StageMeasure(partial(value, k=k), meaning, dimension)
+        for k, (name, meaning, dimension) in enumerate(rows, start=first)
     }
 
 
 #: Every measure by its name; see docs/measures.md for the definitions.
 MEASURES: dict[str, StageMeasure] = {
     **_each(
-        motion,
+        lambda path, k: path.motion[-1, k],
         ("motion x", "displacement of the reference point along x", "length"),
         ("motion y", "displacement of the reference point along y", "length"),
         ("rotation", "rotation of the stage, whole turns counted", "rad"),
     ),
     **_each(
-        place,
+        lambda path, k: path.place[k],
         ("place x", "current place of the reference point", "length"),
         ("place y", "current place of the reference point", "length"),
     ),
-    "travel": StageMeasure(travel, "wanted part of the motion: length, or rad"),
+    "travel": StageMeasure(
+        lambda path: path.travel[-1], "wanted part of the motion: length, or rad"
+    ),
     "parasitic translation": StageMeasure(
         parasitic_translation, "displacement across the travel; all of it for a rotation", "length"
     ),
-    "parasitic rotation": StageMeasure(parasitic_rotation, "rotation beside a translation", "rad"),
+    "parasitic rotation": StageMeasure(
+        lambda path: math.nan if path.turns else path.motion[-1, 2],
+        "rotation beside a translation",
+        "rad",
+    ),
     **_each(
-        center,
+        lambda path, k: float(instant_center(path)[k]),
         ("instant center x", "point that the stage turns about", "length"),
         ("instant center y", "point that the stage turns about", "length"),
     ),
     "center shift": StageMeasure(
-        center_shift, "distance of the instant center from the undeformed reference", "length"
+        lambda path: np.hypot(*(instant_center(path) - path.reference)),
+        "distance of the instant center from the undeformed reference",
+        "length",
     ),
     **_each(
-        force,
+        lambda path, k: path.force[-1, k],
         ("force x", "force on the stage along x", "force"),
         ("force y", "force on the stage along y", "force"),
         ("moment", "moment on the stage about the moved reference point", "force*length"),
     ),
-    "load": StageMeasure(load, "force along the travel, or moment"),
+    "load": StageMeasure(lambda path: path.load[-1], "force along the travel, or moment"),
     **_matrix(
-        "stiffness", stiffness, "tangent stiffness", "force/length force/rad force*length/rad"
+        "stiffness",
+        lambda path, i, j: path.stiffness[-1, i, j],
+        "tangent stiffness",
+        "force/length force/rad force*length/rad",
     ),
     **_matrix(
-        "compliance", compliance, "tangent compliance", "length/force rad/force rad/force/length"
+        "compliance",
+        lambda path, i, j: path.compliance[-1, i, j],
+        "tangent compliance",
+        "length/force rad/force rad/force/length",
     ),
     "axis stiffness": StageMeasure(axis_stiffness, "load per travel"),
     "lateral stiffness": StageMeasure(
         lateral_stiffness, "force per displacement across, other motion free", "force/length"
     ),
-    "stiffness ratio": StageMeasure(stiffness_ratio, "lateral over axis stiffness"),
+    "stiffness ratio": StageMeasure(
+        lambda path: lateral_stiffness(path) * _inverse(axis_stiffness(path)),
+        "lateral over axis stiffness",
+    ),
     "lateral coupling": StageMeasure(lateral_coupling, "displacement across per travel"),
     "rotation coupling": StageMeasure(rotation_coupling, "rotation per travel", "rad/length"),
     **_each(
@@ -538,46 +441,52 @@ MEASURES: dict[str, StageMeasure] = {
         ("elastic center x", "point at rest under a small moment", "length"),
         ("elastic center y", "point at rest under a small moment", "length"),
     ),
-    "work": StageMeasure(work, "work of the forces on the stage", "energy"),
-    "largest load": StageMeasure(largest_load, "largest load so far"),
-    "smallest load": StageMeasure(smallest_load, "smallest load so far"),
-    "insertion load": StageMeasure(insertion_load, "largest resistance while the travel grows"),
-    "retention load": StageMeasure(retention_load, "largest resistance while it shrinks"),
+    "work": StageMeasure(lambda path: path.work[-1], "work of the forces on the stage", "energy"),
+    "largest load": StageMeasure(lambda path: path.load.max(), "largest load so far"),
+    "smallest load": StageMeasure(lambda path: path.load.min(), "smallest load so far"),
+    "insertion load": StageMeasure(
+        partial(_resistance, way=1.0), "largest resistance while the travel grows"
+    ),
+    "retention load": StageMeasure(
+        partial(_resistance, way=-1.0), "largest resistance while it shrinks"
+    ),
     **_each(
-        snap,
+        lambda path, k: _limits(path)[0][k],
         ("snap travel", "travel at the first limit load", ""),
         ("snap load", "first limit load", ""),
-        of="what",
     ),
     **_each(
-        back,
+        lambda path, k: _limits(path)[1][k],
         ("return travel", "travel at the limit load of the way back", ""),
         ("return load", "limit load of the way back", ""),
-        of="what",
     ),
-    "switching travel": StageMeasure(switching_travel, "travel of the unstable equilibrium"),
-    "switching energy": StageMeasure(switching_energy, "work up to it", "energy"),
-    "second equilibrium": StageMeasure(second_equilibrium, "travel of the second stable one"),
+    "switching travel": StageMeasure(
+        lambda path: _zeros(path)[0][0], "travel of the unstable equilibrium"
+    ),
+    "switching energy": StageMeasure(lambda path: _zeros(path)[0][1], "work up to it", "energy"),
+    "second equilibrium": StageMeasure(
+        lambda path: _zeros(path)[1][0], "travel of the second stable one"
+    ),
     "return energy": StageMeasure(return_energy, "work from there back to the unstable", "energy"),
     "transmission ratio": StageMeasure(transmission_ratio, "travel over that of the input"),
     "force ratio": StageMeasure(force_ratio, "load that it gives over that of the input"),
     "efficiency": StageMeasure(efficiency, "work that it gives over that of the input"),
     **_each(
-        utilization,
+        lambda path, k: path.utilization[-1, k],
         ("utilization", "largest share of an allowable that is used", ""),
         ("utilization element", "its element", ""),
         ("utilization x", "its current place", "length"),
         ("utilization y", "its current place", "length"),
-        of="column",
     ),
-    "safety factor": StageMeasure(safety_factor, "allowable over what is used"),
+    "safety factor": StageMeasure(
+        lambda path: _inverse(path.utilization[-1, 0]), "allowable over what is used"
+    ),
     "travel to allowable": StageMeasure(travel_to_allowable, "travel at which one is reached"),
     **_each(
         allowable_place,
         ("allowable element", "element where it is reached first", ""),
         ("allowable x", "current place where it is reached first", "length"),
         ("allowable y", "current place where it is reached first", "length"),
-        of="column",
         first=1,
     ),
 }
