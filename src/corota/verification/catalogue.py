@@ -91,6 +91,19 @@ class Study:
     series: Mapping[str, tuple[Sequence[float], Sequence[float]]]
     across: str = "degrees of freedom"
 
+    @classmethod
+    def over(
+        cls,
+        label: str,
+        names: Iterable[str],
+        sizes: Sequence[int],
+        error: Callable[[str, int], float],
+        across: str,
+    ) -> Study:
+        """Errors of each name, an element or a scheme, at all sizes."""
+        at = [float(size) for size in sizes]
+        return cls(label, {n: (at, [error(n, size) for size in sizes]) for n in names}, across)
+
 
 @dataclass(frozen=True)
 class Curve:

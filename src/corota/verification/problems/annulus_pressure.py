@@ -89,11 +89,7 @@ def measure() -> Iterator[Value]:
 def study() -> Study:
     """Error of every element."""
     sizes = (2, 4, 8, 16, 32)
-    return Study(
-        "error of the displacement",
-        {e: ([float(n) for n in sizes], [error(e, n) for n in sizes]) for e in ELEMENTS},
-        "cells across",
-    )
+    return Study.over("error of the displacement", ELEMENTS, sizes, error, "cells across")
 
 
 PROBLEM = Problem(

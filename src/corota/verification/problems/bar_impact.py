@@ -66,16 +66,11 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Error of the shortening with cells and increments together."""
-    cells = (25, 50, 100, 200)
-    return Study(
+    return Study.over(
         "error of the largest shortening",
-        {
-            e: (
-                [float(n) for n in cells],
-                [abs(struck(e, "hht", n).shortening - 1.0) for n in cells],
-            )
-            for e in ("Q4I", "Q4D")
-        },
+        ("Q4I", "Q4D"),
+        (25, 50, 100, 200),
+        lambda e, n: abs(struck(e, "hht", n).shortening - 1.0),
         "cells along the bar",
     )
 

@@ -109,16 +109,11 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Distance of the paths with cells and increments refined together."""
-    cells = (12, 16, 24, 32)
-    return Study(
+    return Study.over(
         "largest distance of the paths / length",
-        {
-            e: (
-                [float(n) for n in cells],
-                [float(np.hypot(*(solid(e, n, 15 * n) - beams()).T).max()) / LENGTH for n in cells],
-            )
-            for e in ("Q4I", "Q4D", "OPT", "Q8")
-        },
+        ("Q4I", "Q4D", "OPT", "Q8"),
+        (12, 16, 24, 32),
+        lambda e, n: float(np.hypot(*(solid(e, n, 15 * n) - beams()).T).max()) / LENGTH,
         "cells along",
     )
 

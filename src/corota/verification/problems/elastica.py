@@ -101,13 +101,13 @@ def curve() -> Curve:
 def study() -> Study:
     """Largest error over all loads against cells along."""
     exact = np.array([row[1:] for row in EXACT])
-    series = {}
-    for element in ("Q4I", "OPT", "Q4D", "Q8", "Q9"):
-        ny = MESHES[element][1]
-        cells = (10, 20, 40, 80)
-        errors = [float(np.abs(end(solved(element, n, ny)) / exact - 1.0).max()) for n in cells]
-        series[element] = ([float(n) for n in cells], errors)
-    return Study("largest error, which ends at that of the slenderness", series, "cells along")
+    return Study.over(
+        "largest error, which ends at that of the slenderness",
+        ("Q4I", "OPT", "Q4D", "Q8", "Q9"),
+        (10, 20, 40, 80),
+        lambda e, n: float(np.abs(end(solved(e, n, MESHES[e][1])) / exact - 1.0).max()),
+        "cells along",
+    )
 
 
 PROBLEM = Problem(

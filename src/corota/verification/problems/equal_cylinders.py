@@ -77,15 +77,13 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Error of the peak pressure."""
-    cells = (16, 32, 64)
-    series = {
-        e: (
-            [float(n) for n in cells],
-            [abs(ellipse_of(*pressures(solved(e, n)))[1] / PEAK - 1.0) for n in cells],
-        )
-        for e in ("Q4I", "Q4D")
-    }
-    return Study("error of the peak pressure", series, "elements per side")
+    return Study.over(
+        "error of the peak pressure",
+        ("Q4I", "Q4D"),
+        (16, 32, 64),
+        lambda e, n: abs(ellipse_of(*pressures(solved(e, n)))[1] / PEAK - 1.0),
+        "elements per side",
+    )
 
 
 PROBLEM = Problem(

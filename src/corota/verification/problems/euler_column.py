@@ -89,15 +89,15 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Error of the first load."""
-    series = {}
-    for element in ELEMENTS:
-        cells = (5, 10, 20, 40)
-        errors = [
-            abs(float(run(column(element, n=n), Buckle()).modes[0].factors[0]) / euler_load() - 1.0)
-            for n in cells
-        ]
-        series[element] = ([float(n) for n in cells], errors)
-    return Study("error of the buckling load", series, "cells along")
+    return Study.over(
+        "error of the buckling load",
+        ELEMENTS,
+        (5, 10, 20, 40),
+        lambda e, n: abs(
+            float(run(column(e, n=n), Buckle()).modes[0].factors[0]) / euler_load() - 1.0
+        ),
+        "cells along",
+    )
 
 
 PROBLEM = Problem(

@@ -111,15 +111,14 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Error of the half width."""
-    cells, a = (12, 24, 48, 96), theory("strain")[0]
-    series = {
-        e: (
-            [float(n) for n in cells],
-            [abs(measured(solved("strain", e, n))[0] / a - 1.0) for n in cells],
-        )
-        for e in ("Q4I", "Q4D")
-    }
-    return Study("error of the half width", series, "elements per side")
+    a = theory("strain")[0]
+    return Study.over(
+        "error of the half width",
+        ("Q4I", "Q4D"),
+        (12, 24, 48, 96),
+        lambda e, n: abs(measured(solved("strain", e, n))[0] / a - 1.0),
+        "elements per side",
+    )
 
 
 PROBLEM = Problem(

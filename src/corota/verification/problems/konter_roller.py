@@ -127,15 +127,14 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Error of the peak pressure."""
-    cells, p0 = (10, 20, 40), hertz(LOAD, "strain")[1]
-    series = {
-        e: (
-            [float(n) for n in cells],
-            [abs(ellipse(roller(n, e))[1] / p0 - 1.0) for n in cells],
-        )
-        for e in ("Q4I", "Q4D", "Q8R")
-    }
-    return Study("error of the peak pressure", series, "elements per side")
+    p0 = hertz(LOAD, "strain")[1]
+    return Study.over(
+        "error of the peak pressure",
+        ("Q4I", "Q4D", "Q8R"),
+        (10, 20, 40),
+        lambda e, n: abs(ellipse(roller(n, e))[1] / p0 - 1.0),
+        "elements per side",
+    )
 
 
 PROBLEM = Problem(

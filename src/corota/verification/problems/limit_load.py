@@ -101,17 +101,12 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Change of the collapse load with the layers."""
-    layers = (4, 8, 16)
     last = {e: loads(solved("10 x 1", e, 32), "10 x 1")[1][-1] for e in ("Q4I", "Q8R", "Q4D")}
-    return Study(
+    return Study.over(
         "collapse load less that of 32 layers, relative",
-        {
-            e: (
-                [float(n) for n in layers],
-                [abs(loads(solved("10 x 1", e, n), "10 x 1")[1][-1] / v - 1.0) for n in layers],
-            )
-            for e, v in last.items()
-        },
+        last,
+        (4, 8, 16),
+        lambda e, n: abs(loads(solved("10 x 1", e, n), "10 x 1")[1][-1] / last[e] - 1.0),
         "layers",
     )
 

@@ -145,13 +145,11 @@ def measure() -> Iterator[Value]:
 
 def study() -> Study:
     """Error of the displacement."""
-    cells = (4, 8, 16, 32)
-    return Study(
+    return Study.over(
         "error of the displacement (L2), potentials",
-        {
-            e: ([float(n) for n in cells], [errors(e, n, "potentials")[0] for n in cells])
-            for e in ELEMENTS
-        },
+        ELEMENTS,
+        (4, 8, 16, 32),
+        lambda e, n: errors(e, n, "potentials")[0],
         "elements per side",
     )
 

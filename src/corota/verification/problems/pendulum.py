@@ -115,11 +115,11 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Error of the period against increments a period."""
-    counts = (100, 200, 400)
-    errors = [abs(period(swing("Q4I", 1.6, n)) / PERIOD - 1.0) for n in counts]
-    return Study(
+    return Study.over(
         "error of the period, down to the flexibility",
-        {"Q4I": ([float(n) for n in counts], errors)},
+        ("Q4I",),
+        (100, 200, 400),
+        lambda e, n: abs(period(swing(e, 1.6, n)) / PERIOD - 1.0),
         "increments a period",
     )
 

@@ -96,15 +96,13 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Error of the limit load."""
-    cells = (3, 6, 12)
-    series = {
-        e: (
-            [float(n) for n in cells],
-            [abs(force(limit(e, n))[-1] / LIMIT - 1.0) for n in cells],
-        )
-        for e in ("Q4I", "Q8R", "Q8", "Q4D", "OPT")
-    }
-    return Study("error of the limit load", series, "cells along an eighth of the hole")
+    return Study.over(
+        "error of the limit load",
+        ("Q4I", "Q8R", "Q8", "Q4D", "OPT"),
+        (3, 6, 12),
+        lambda e, n: abs(force(limit(e, n))[-1] / LIMIT - 1.0),
+        "cells along an eighth of the hole",
+    )
 
 
 PROBLEM = Problem(

@@ -66,13 +66,11 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Error against cells."""
-    cells = (4, 8, 16, 32)
-    return Study(
+    return Study.over(
         "error of the rise",
-        {
-            e: ([float(n) for n in cells], [abs(rise(e, n) / TIP - 1.0) for n in cells])
-            for e in ("Q4", "Q4I", "Q8", "Q8R", "Q4D", "OPT")
-        },
+        ("Q4", "Q4I", "Q8", "Q8R", "Q4D", "OPT"),
+        (4, 8, 16, 32),
+        lambda e, n: abs(rise(e, n) / TIP - 1.0),
         "elements per side",
     )
 

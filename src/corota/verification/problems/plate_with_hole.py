@@ -98,15 +98,13 @@ def measure() -> Iterator[Value]:
 
 def study() -> Study:
     """Error of the largest stress of the infinite plate."""
-    cells = (3, 6, 12, 24)
-    series = {
-        e: (
-            [float(n) for n in cells],
-            [abs(stresses(infinite(e, n))[0] / 3.0 - 1.0) for n in cells],
-        )
-        for e in ("Q4I", "T6", "Q8", "Q9")
-    }
-    return Study("error of the largest stress", series, "cells along an eighth of the hole")
+    return Study.over(
+        "error of the largest stress",
+        ("Q4I", "T6", "Q8", "Q9"),
+        (3, 6, 12, 24),
+        lambda e, n: abs(stresses(infinite(e, n))[0] / 3.0 - 1.0),
+        "cells along an eighth of the hole",
+    )
 
 
 PROBLEM = Problem(

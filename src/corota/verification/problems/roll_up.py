@@ -78,12 +78,13 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Miss of the end at the full moment."""
-    series = {}
-    for element, (_, ny) in MESHES.items():
-        cells = (25, 50, 100, 200)
-        misses = [float(np.hypot(*places(solved(element, n, ny))[-1])) for n in cells]
-        series[element] = ([float(n) for n in cells], misses)
-    return Study("miss of the end over the length", series, "cells along")
+    return Study.over(
+        "miss of the end over the length",
+        MESHES,
+        (25, 50, 100, 200),
+        lambda e, n: float(np.hypot(*places(solved(e, n, MESHES[e][1]))[-1])),
+        "cells along",
+    )
 
 
 PROBLEM = Problem(

@@ -68,15 +68,13 @@ def measure() -> Iterator[Value]:
 
 def study() -> Study:
     """Error of the growth of the inner edge."""
-    cells = (2, 4, 8, 16)
-    series = {
-        e: (
-            [float(n) for n in cells],
-            [abs(growth(solved(e, n), "inner") / EXACT["inner"][0] - 1.0) for n in cells],
-        )
-        for e in ("Q4I", "Q4D", "OPT", "T6", "Q8")
-    }
-    return Study("error of the growth of the inner edge", series, "cells across")
+    return Study.over(
+        "error of the growth of the inner edge",
+        ("Q4I", "Q4D", "OPT", "T6", "Q8"),
+        (2, 4, 8, 16),
+        lambda e, n: abs(growth(solved(e, n), "inner") / EXACT["inner"][0] - 1.0),
+        "cells across",
+    )
 
 
 PROBLEM = Problem(

@@ -95,16 +95,12 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Error of the limit load."""
-    cells = (4, 8, 16)
-    return Study(
+    mean = {"Q8R": False, "Q4I": False, "Q4": True}
+    return Study.over(
         "error of the limit load",
-        {
-            e: (
-                [float(n) for n in cells],
-                [abs(pressures(solved(e, m, n))[-1] / LIMIT - 1.0) for n in cells],
-            )
-            for e, m in (("Q8R", False), ("Q4I", False), ("Q4", True))
-        },
+        mean,
+        (4, 8, 16),
+        lambda e, n: abs(pressures(solved(e, mean[e], n))[-1] / LIMIT - 1.0),
         "cells below half of the footing",
     )
 

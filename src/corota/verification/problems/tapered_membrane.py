@@ -51,15 +51,13 @@ def measure() -> Iterator[Value]:
 
 def study() -> Study:
     """Largest error of the first three."""
-    series = {}
-    for element in ("Q4I", "Q4D", "OPT", "Q8", "Q9"):
-        cells = (2, 4, 8)
-        errors = [
-            float(np.abs(frequencies(tapered(element, 2 * n, n), 3) / EXACT[:3] - 1.0).max())
-            for n in cells
-        ]
-        series[element] = ([float(n) for n in cells], errors)
-    return Study("largest error of three frequencies", series, "cells across")
+    return Study.over(
+        "largest error of three frequencies",
+        ("Q4I", "Q4D", "OPT", "Q8", "Q9"),
+        (2, 4, 8),
+        lambda e, n: float(np.abs(frequencies(tapered(e, 2 * n, n), 3) / EXACT[:3] - 1.0).max()),
+        "cells across",
+    )
 
 
 PROBLEM = Problem(

@@ -93,15 +93,13 @@ def measure() -> Iterator[Value]:
 def study() -> Study:
     """Error of the outer displacement at c = 160."""
     p, exact = hill(160.0, 0.4999)
-    cells = (3, 6, 12, 24)
-    series = {
-        e: (
-            [float(n) for n in cells],
-            [abs(ring(e, n, "strain", perfect(0.4999), p, **o)[1] / exact - 1.0) for n in cells],
-        )
-        for e, o in ELEMENTS.items()
-    }
-    return Study("error of the outer displacement", series, "cells across")
+    return Study.over(
+        "error of the outer displacement",
+        ELEMENTS,
+        (3, 6, 12, 24),
+        lambda e, n: abs(ring(e, n, "strain", perfect(0.4999), p, **ELEMENTS[e])[1] / exact - 1.0),
+        "cells across",
+    )
 
 
 PROBLEM = Problem(

@@ -86,17 +86,13 @@ def study() -> Study:
     """Error of the outer displacement for the exponent 10 and 20 yield strains."""
     pressure, outer, _ = exact(*CASES[-1])
     material = law(CASES[-1][0])
-    series = {
-        element: (
-            [float(n) for n in CELLS],
-            [
-                abs(ring(element, n, "strain", material, pressure, **options)[1] / outer - 1.0)
-                for n in CELLS
-            ],
-        )
-        for element, options in ELEMENTS.items()
-    }
-    return Study("error of the outer displacement", series, "cells across")
+    return Study.over(
+        "error of the outer displacement",
+        ELEMENTS,
+        CELLS,
+        lambda e, n: abs(ring(e, n, "strain", material, pressure, **ELEMENTS[e])[1] / outer - 1.0),
+        "cells across",
+    )
 
 
 PROBLEM = Problem(
