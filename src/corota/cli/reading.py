@@ -34,16 +34,19 @@ def read_input(name: str, args: Any) -> Model:
     if path.suffix.lower() not in MODEL_READERS:
         mesh = meshes.read(path)
         return Model(mesh, path.stem)
-    return read(
-        path,
-        element_map=dict(args.elements),
-        lenient=args.lenient,
-        allow_include=args.allow_include,
-        as_written=args.as_written,
-        parameters=dict(getattr(args, "parameters", ())),
-        stages=getattr(args, "stages", ()),
-        library=getattr(args, "library", None),
-    )
+    return read(path, parameters=dict(getattr(args, "parameters", ())), **reading_options(args))
+
+
+def reading_options(args: Any) -> dict[str, Any]:
+    """Options of :func:`corota.io.formats.read` from the command line, but the parameters."""
+    return {
+        "element_map": dict(args.elements),
+        "lenient": args.lenient,
+        "allow_include": args.allow_include,
+        "as_written": args.as_written,
+        "stages": tuple(getattr(args, "stages", ())),
+        "library": getattr(args, "library", None),
+    }
 
 
 def is_result(name: str) -> bool:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from corota.cli.reading import reading_options
 from corota.errors import FileError, InputError
 
 if TYPE_CHECKING:
@@ -23,17 +24,7 @@ def run(args: Any, terminal: Terminal) -> int:
     name, values = args.range
     if len(values) < 2:
         raise InputError(f"-p {name} needs a range, such as {name}=0.3:0.9")
-    build = DeckBuild(
-        deck,
-        {
-            "element_map": dict(args.elements),
-            "lenient": args.lenient,
-            "allow_include": args.allow_include,
-            "as_written": args.as_written,
-            "stages": tuple(args.stages),
-            "library": args.library,
-        },
-    )
+    build = DeckBuild(deck, reading_options(args))
 
     def progress(value: float, measure: float) -> None:
         terminal.line(f"  {name} = {value:<14.8g} {args.measure} = {measure:.8g}")

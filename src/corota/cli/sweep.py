@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from corota.cli.progress import duration
+from corota.cli.reading import reading_options
 from corota.errors import FileError, InputError
 
 if TYPE_CHECKING:
@@ -43,17 +44,7 @@ def run(args: Any, terminal: Terminal) -> int:
     else:
         rows = grid(**dict(args.grid))
     rows = [dict(args.parameters) | row for row in rows]
-    build = DeckBuild(
-        deck,
-        {
-            "element_map": dict(args.elements),
-            "lenient": args.lenient,
-            "allow_include": args.allow_include,
-            "as_written": args.as_written,
-            "stages": tuple(args.stages),
-            "library": args.library,
-        },
-    )
+    build = DeckBuild(deck, reading_options(args))
     table = Path(args.output or f"{deck.stem}_sweep.csv")
     store = table.with_suffix(".jsonl")
     _refuse_inputs(build, table, store)
