@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.arrays import Floats
     from corota.gradients.trajectory import Point, Trajectory
     from corota.results.results import Results
@@ -64,16 +65,10 @@ class Tangent:
 
     def __init__(self, system: System, u: Floats, time: float) -> None:
         at = system.evaluate(u, time)
-        matrix = system.pattern.full(at.values).tocsr()
-        if at.load_stiffness is not None:
-            rows, columns, values = at.load_stiffness
-            n = system.n_dofs
-            matrix = matrix - sp.coo_array((values, (rows, columns)), shape=(n, n)).tocsr()
         self.free = system.constraints.free
         self.active = np.flatnonzero(~system.conditions.constrained[self.free])
         self.link = at.link
-        reduced = sp.csc_array(at.link.reduce_full(matrix.tocsc(), at.residual))
-        self.matrix = reduced[self.active][:, self.active].tocsc()
+        self.matrix = _full(system, at)[self.active][:, self.active].tocsc()
         self.residual = self.restrict(at.reaction)
         system.return_tangent(at)
 
@@ -366,17 +361,22 @@ def _secant(function: Callable[[float], float], start: float, step: float, what:
         raise UnsupportedError(f"{what!r}: the critical point could not be located exactly")
 
 
+def _full(system: System, at: Evaluation) -> Any:
+    """Tangent of all unknowns, scipy CSC."""
+    matrix = system.pattern.full(at.values).tocsr()
+    if at.load_stiffness is not None:
+        rows, columns, values = at.load_stiffness
+        n = system.n_dofs
+        matrix = matrix - sp.coo_array((values, (rows, columns)), shape=(n, n)).tocsr()
+    return sp.csc_array(at.link.reduce_full(matrix.tocsc(), at.residual))
+
+
 def _reduced(system: System, u: Floats, time: float) -> Any:
     """Tangent of all unknowns at a state, scipy CSC."""
     tangent = system.evaluate(u, time)
-    matrix = system.pattern.full(tangent.values).tocsr()
-    if tangent.load_stiffness is not None:
-        rows, columns, values = tangent.load_stiffness
-        n = system.n_dofs
-        matrix = matrix - sp.coo_array((values, (rows, columns)), shape=(n, n)).tocsr()
-    out = tangent.link.reduce_full(matrix.tocsc(), tangent.residual)
+    out = _full(system, tangent)
     system.return_tangent(tangent)
-    return sp.csc_array(out)
+    return out
 
 
 def _quadratic(point: Point, shape: Floats, change: float = 0.0) -> float:

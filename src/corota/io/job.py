@@ -32,7 +32,6 @@ from corota.results.observer import BaseObserver, Iteration
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from os import PathLike
-    from types import TracebackType
 
     from corota.io.checkpoint import Saved
     from corota.model.model import Model
@@ -527,12 +526,7 @@ class JobFiles(BaseObserver):
     def __enter__(self) -> JobFiles:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         self.close()
 
     # The writer's side.

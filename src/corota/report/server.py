@@ -23,7 +23,6 @@ from corota.report.records import JobPaths, JobRecords, Records
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import TracebackType
 
 
 Answer = TypeVar("Answer")
@@ -258,12 +257,7 @@ class PageServer(ThreadingHTTPServer):
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         self.shutdown()
         self.server_close()
 

@@ -19,7 +19,6 @@ from corota.sweeps.variant import DeckBuild, Job, Outcome
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
-    from types import TracebackType
 
 
 class Store:
@@ -106,12 +105,7 @@ class Store:
                 raise FileError(f"{self.path}: {error.strerror}") from None
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         if self._file is not None:
             self._file.close()
 

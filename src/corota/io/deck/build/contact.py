@@ -13,30 +13,25 @@ from corota.io.deck.build.general_contact import add_general
 from corota.io.deck.build.mesh import View, placed, views_in
 from corota.io.deck.build.ties import single_node
 from corota.io.deck.cards.contact import interaction_of
-from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.deck import nearest
 from corota.io.deck.lexer import Card, key
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
 from corota.model.steps import Buckle, Frequency, Visco
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from corota.arrays import Bools, Floats, Ints
-    from corota.io.deck.build.sets import Sets
-    from corota.io.deck.drafts import Draft, InteractionDraft, PairDraft, Surface, SurfaceRow
+    from corota.arrays import Floats, Ints
+    from corota.io.deck.build.targets import Targets
+    from corota.io.deck.drafts import InteractionDraft, PairDraft, Surface, SurfaceRow
     from corota.mesh.data import Mesh
-    from corota.model.model import Model
-
-    Find = Callable[[Draft], str | Ints | None]
 
 #: Procedures without velocities; ``None`` is a static step.
 AT_REST = (None, Visco, Buckle, Frequency)
 
 
-def build_contacts(deck: Deck, model: Model, sets: Sets, find: Find, rotating: Bools) -> None:
+def build_contacts(targets: Targets) -> None:
     """Add the deck's contact pairs and ties to the model; reference nodes get a rotation."""
-    builder = _Builder(deck, model, sets, find, rotating)
-    add_general(deck, model, sets)
+    builder, deck = _Builder(targets), targets.deck
+    add_general(deck, targets.model, targets.sets)
     for pair in deck.pairs:
         try:
             builder.add(pair)
@@ -46,13 +41,13 @@ def build_contacts(deck: Deck, model: Model, sets: Sets, find: Find, rotating: B
 
 
 class _Builder:
-    def __init__(self, deck: Deck, model: Model, sets: Sets, find: Find, rotating: Bools) -> None:
-        self.deck, self.model, self.sets = deck, model, sets
-        self.find, self.rotating = find, rotating
+    def __init__(self, targets: Targets) -> None:
+        self.targets, self.deck, self.model = targets, targets.deck, targets.model
+        self.sets, self.rotating = targets.sets, targets.rotating
         self.curves: dict[str, RigidCurve] = {}
         self.carriers = {
             self._full(card, shown) or key(shown): (card, draft)
-            for shown, (card, draft) in deck.carriers.items()
+            for shown, (card, draft) in self.deck.carriers.items()
         }
 
     def add(self, pair: PairDraft) -> None:
@@ -227,7 +222,7 @@ class _Builder:
         reference: int | None = None
         card, draft = self.carriers.get(name, (surface.card, None))
         if draft is not None:
-            reference = single_node(self.deck, self.find, draft, self.model)
+            reference = single_node(self.targets, draft)
             if reference is None:
                 return None
             self.rotating[reference] = True
@@ -293,7 +288,7 @@ class _Builder:
                 full = self.sets.full_name(self.sets.elsets, view, tie.elset)
                 found = self.sets.element_set(full) if full else None
                 if found is not None and lines <= set(found.lines.tolist()):
-                    return single_node(self.deck, self.find, tie.terms[0], self.model)
+                    return single_node(self.targets, tie.terms[0])
         return None
 
     def unused(self) -> None:

@@ -73,21 +73,13 @@ class ModelBuilder:
         for tie in deck.ties:
             for view in views_in(self.meshes.views, deck, tie.card.scope):
                 targets.at = view
-                build_tie(
-                    deck,
-                    model,
-                    targets.nodes,
-                    targets.tied,
-                    targets.surface_name,
-                    targets.rotating,
-                    tie,
-                )
+                build_tie(targets, tie)
         targets.at = self.meshes.views[0]
         if deck.has_contact:
-            build_contacts(deck, model, self.sets, targets.nodes, targets.rotating)
+            build_contacts(targets)
         model.amplitudes = {a.name: a for a in deck.amplitudes.values()}
         if pretension is not None:
-            pretension.join(targets.nodes, targets.rotating)
+            pretension.join(targets)
         if deck.attached or deck.properties:
             build_attachments(deck, model, targets.nodes, targets.rotating)
         model.supports += self.loads.supports(deck.supports)

@@ -24,15 +24,12 @@ from corota.model.constraints import Equation, LocalAxes
 from corota.model.loads import Fixed, InitialTemperature, InitialVelocity, Temperature
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from corota.arrays import Bools, Floats, Ints
+    from corota.arrays import Floats, Ints
     from corota.io.deck.build.sets import Sets
-    from corota.io.deck.drafts import Draft, PretensionDraft
+    from corota.io.deck.build.targets import Targets
+    from corota.io.deck.drafts import PretensionDraft
     from corota.mesh.data import Mesh
     from corota.model.model import Model
-
-    Find = Callable[[Draft], str | Ints | None]
 
 _Item = TypeVar("_Item")
 
@@ -149,11 +146,11 @@ class PretensionBuilder:
                 self.model.axes.append(LocalAxes(np.array([a]), angle, None, axes.where))
         return angles
 
-    def join(self, find: Find, rotating: Bools) -> None:
+    def join(self, targets: Targets) -> None:
         """Tie the faces of each cut to the node of its section."""
-        angles = self._angles()
+        angles, rotating = self._angles(), targets.rotating
         for draft, near, far, normal in self.cuts:
-            node = single_node(self.deck, find, draft.node, self.model)
+            node = single_node(targets, draft.node)
             if node is None:
                 continue
             where = draft.card.where

@@ -8,76 +8,46 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from corota.errors import InputError
-from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.deck import nearest
 from corota.io.deck.lexer import key
 from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
     from typing import Literal
 
-    from corota.arrays import Bools, Floats, Ints
+    from corota.arrays import Floats, Ints
+    from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import Draft, TieDraft
     from corota.model.model import Model
 
-    Find = Callable[[Draft], str | Ints | None]
-    FindCells = Callable[[TieDraft], Ints | None]
-    FindName = Callable[[Mapping[str, object], str], str]
 
-
-def build_tie(
-    deck: Deck,
-    model: Model,
-    find: Find,
-    cells: FindCells,
-    name: FindName,
-    rotating: Bools,
-    tie: TieDraft,
-) -> None:
-    """Add one of the deck's constraints to the model; reference nodes get a rotation.
-
-    ``find`` and ``cells`` look up nodes and elements, ``name`` a name in a table of the mesh.
-    """
+def build_tie(targets: Targets, tie: TieDraft) -> None:
+    """Add one of the deck's constraints to the model; reference nodes get a rotation."""
     if not tie.ready:
-        deck.error(tie.card, tie.where, "*KINEMATIC or *DISTRIBUTING is missing after this card")
+        text = "*KINEMATIC or *DISTRIBUTING is missing after this card"
+        targets.deck.error(tie.card, tie.where, text)
         return
     try:
-        _build(deck, model, find, cells, name, rotating, tie)
+        _build(targets, tie)
     except InputError as error:
-        deck.error(tie.card, tie.where, error.message)
+        targets.deck.error(tie.card, tie.where, error.message)
 
 
-def _build(
-    deck: Deck,
-    model: Model,
-    find: Find,
-    cells: FindCells,
-    name: FindName,
-    rotating: Bools,
-    tie: TieDraft,
-) -> None:
+def _build(targets: Targets, tie: TieDraft) -> None:
+    model = targets.model
     if tie.kind == "axes":
         assert tie.target is not None
-        nodes = find(tie.target)
+        nodes = targets.nodes(tie.target)
         if nodes is not None:
             model.axes.append(LocalAxes(nodes, tie.angle, tie.center, tie.where))
         return
-    if tie.kind == "straight":
-        _straight(deck, model, find, tie)
-        return
-    if tie.kind == "between":
-        _between(deck, model, find, rotating, tie)
-        return
-    if tie.kind == "same":
-        _same(model, find, rotating, tie)
+    if tie.kind in OTHERS:
+        OTHERS[tie.kind](targets, tie)
         return
     if tie.members:
-        _weighted(deck, model, find, rotating, tie)
+        _weighted(targets, tie)
         return
-    if tie.kind == "equation":
-        _equations(deck, model, find, tie)
-        return
-    single = [single_node(deck, find, term, model) for term in tie.terms]
+    single = [single_node(targets, term) for term in tie.terms]
     if None in single:
         return
     numbers = cast("list[int]", single)
@@ -85,7 +55,7 @@ def _build(
     weights: Floats | None = None
     chosen: str | Ints | None
     if tie.surface:
-        chosen, weights = _surface(deck, model, name, tie)
+        chosen, weights = _surface(targets, tie)
         if chosen is not None:
             near = np.hypot(*(model.mesh.points[chosen] - model.mesh.points[reference]).T)
             inside = near <= tie.radius * (1.0 + 1e-9)
@@ -94,10 +64,10 @@ def _build(
             chosen = chosen[inside]
             weights = weights[inside] if weights is not None else None
     elif tie.elset:
-        chosen = cells(tie)
+        chosen = targets.tied(tie)
     else:
         assert tie.target is not None
-        chosen = find(tie.target)
+        chosen = targets.nodes(tie.target)
     if chosen is None:
         return
     if tie.kind == "kinematic":
@@ -105,20 +75,21 @@ def _build(
     kind = cast("Literal['kinematic', 'distributing']", tie.kind)
     title = "rigid body" if not tie.surface else ""
     model.constraints.append(Coupling(chosen, reference, kind, tie.dofs, weights, title, tie.where))
-    if kind == "distributing" and 2 not in tie.dofs and not rotating[reference]:
-        deck.without_moment.add(reference)
-    rotating[reference] = True
+    if kind == "distributing" and 2 not in tie.dofs and not targets.rotating[reference]:
+        targets.deck.without_moment.add(reference)
+    targets.rotating[reference] = True
 
 
-def _equations(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
+def _equations(targets: Targets, tie: TieDraft) -> None:
     """An equation; between sets as many, node by node in the order of their numbers.
 
     Sets with ``UNSORTED`` keep their order, and a single node is in all equations, as in Abaqus.
     """
+    deck, model = targets.deck, targets.model
     labels = model.mesh.node_labels
     columns: list[Ints] = []
     for term in tie.terms:
-        found = find(term)
+        found = targets.nodes(term)
         if found is None:
             return
         nodes = model.mesh.nodes_of(found) if isinstance(found, str) else found
@@ -141,8 +112,9 @@ def _equations(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
         model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
-def _weighted(deck: Deck, model: Model, find: Find, rotating: Bools, tie: TieDraft) -> None:
+def _weighted(targets: Targets, tie: TieDraft) -> None:
     """Distributing coupling of listed nodes; its element names the reference node."""
+    deck, model = targets.deck, targets.model
     draft = deck.couplers.get(key(tie.elset))
     if draft is None:
         deck.error(
@@ -152,8 +124,8 @@ def _weighted(deck: Deck, model: Model, find: Find, rotating: Bools, tie: TieDra
             hint=nearest(tie.elset, deck.couplers),
         )
         return
-    reference = single_node(deck, find, draft, model)
-    found = [(find(item), weight) for item, weight in tie.members]
+    reference = single_node(targets, draft)
+    found = [(targets.nodes(item), weight) for item, weight in tie.members]
     if reference is None or any(nodes is None for nodes, _ in found):
         return
     share = np.zeros(model.mesh.n_nodes)
@@ -168,7 +140,7 @@ def _weighted(deck: Deck, model: Model, find: Find, rotating: Bools, tie: TieDra
         )
         # The first term of an equation is the dof that it determines: none that a support moves.
         every = [*deck.supports, *(item for step in deck.steps for item in step.supports)]
-        moved = {item.index for item in every if _names(model, find(item), reference)}
+        moved = {item.index for item in every if _names(model, targets.nodes(item), reference)}
         part = -share[chosen] / share.sum()
         for dof in (0, 1):
             rows = [(int(n), dof, float(w)) for n, w in zip(chosen, part, strict=True)]
@@ -177,7 +149,7 @@ def _weighted(deck: Deck, model: Model, find: Find, rotating: Bools, tie: TieDra
         return
     coupling = Coupling(chosen, reference, "distributing", tie.dofs, share[chosen], "", tie.where)
     model.constraints.append(coupling)
-    rotating[reference] = True
+    targets.rotating[reference] = True
 
 
 def _names(model: Model, nodes: str | Ints | None, node: int) -> bool:
@@ -187,27 +159,26 @@ def _names(model: Model, nodes: str | Ints | None, node: int) -> bool:
     )
 
 
-def _straight(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
+def _straight(targets: Targets, tie: TieDraft) -> None:
     """Nodes on the line through the first two."""
-    found = [find(term) for term in tie.terms]
+    model = targets.model
+    found = [targets.nodes(term) for term in tie.terms]
     if any(nodes is None for nodes in found):
         return
     parts = [model.mesh.nodes_of(n) if isinstance(n, str) else n for n in found if n is not None]
     nodes = np.concatenate([np.zeros(0, np.int64), *parts])
     if len(nodes) < 3:
-        deck.error(
-            tie.card,
-            tie.where,
-            "at least three nodes are expected, beginning with the two of the line",
-        )
+        text = "at least three nodes are expected, beginning with the two of the line"
+        targets.deck.error(tie.card, tie.where, text)
         return
     ends = int(nodes[0]), int(nodes[1])
     model.constraints.append(StraightLine(nodes[2:], *ends, tie.where))
 
 
-def _between(deck: Deck, model: Model, find: Find, rotating: Bools, tie: TieDraft) -> None:
+def _between(targets: Targets, tie: TieDraft) -> None:
     """Dofs of a node by linear interpolation between two others, from its place between them."""
-    found = [single_node(deck, find, term, model) for term in tie.terms]
+    model = targets.model
+    found = [single_node(targets, term) for term in tie.terms]
     if None in found:
         return
     if len(found) != 3:
@@ -219,18 +190,19 @@ def _between(deck: Deck, model: Model, find: Find, rotating: Bools, tie: TieDraf
     if length == 0.0:
         raise InputError("the two nodes to interpolate between are at one place", tie.where)
     share = float((x[0] - x[1]) @ way) / length
-    turns = rotating[[node, first, second]].all()
+    turns = targets.rotating[[node, first, second]].all()
     for dof in range(3 if turns else 2):
         terms = [(node, dof, 1.0), (first, dof, share - 1.0), (second, dof, -share)]
         model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
-def _same(model: Model, find: Find, rotating: Bools, tie: TieDraft) -> None:
+def _same(targets: Targets, tie: TieDraft) -> None:
     """Equal displacements, and rotations where both have one, of pairs of nodes."""
+    model, rotating = targets.model, targets.rotating
     assert tie.target is not None
     pairs = []
     for draft in (tie.target, tie.terms[0]):
-        found = find(draft)
+        found = targets.nodes(draft)
         if found is None:
             return
         pairs.append(model.mesh.nodes_of(found) if isinstance(found, str) else found)
@@ -246,29 +218,23 @@ def _same(model: Model, find: Find, rotating: Bools, tie: TieDraft) -> None:
                 model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
-def single_node(deck: Deck, find: Find, draft: Draft, model: Model) -> int | None:
+def single_node(targets: Targets, draft: Draft) -> int | None:
     """Index of the one node that a draft names, by number or set; ``None`` after an error."""
-    found = find(draft)
+    found = targets.nodes(draft)
     if found is None:
         return None
-    nodes = model.mesh.nodes_of(found) if isinstance(found, str) else found
+    nodes = targets.mesh.nodes_of(found) if isinstance(found, str) else found
     if len(nodes) != 1:
-        deck.row_error(
-            draft.card,
-            draft.row,
-            0,
-            f"one node is expected; the set {draft.target} has {len(nodes)}",
-        )
+        text = f"one node is expected; the set {draft.target} has {len(nodes)}"
+        targets.deck.row_error(draft.card, draft.row, 0, text)
         return None
     return int(nodes[0])
 
 
-def _surface(
-    deck: Deck, model: Model, find_name: FindName, tie: TieDraft
-) -> tuple[Ints | None, Floats | None]:
+def _surface(targets: Targets, tie: TieDraft) -> tuple[Ints | None, Floats | None]:
     """Nodes of a surface, and their shares of its length."""
-    mesh = model.mesh
-    name = find_name(mesh.edge_sets, tie.surface)
+    mesh = targets.mesh
+    name = targets.surface_name(mesh.edge_sets, tie.surface)
     if name:
         share = np.zeros(mesh.n_nodes)
         for ends in mesh.edge_nodes(mesh.edge_sets[name]):
@@ -279,13 +245,19 @@ def _surface(
                 share[ends] += np.array([1.0, 1.0, 4.0]) / 6.0 * length
         nodes = np.flatnonzero(share)
         return nodes, share[nodes]
-    name = find_name(mesh.node_sets, tie.surface)
+    name = targets.surface_name(mesh.node_sets, tie.surface)
     if name:
         return np.asarray(mesh.node_sets[name], np.int64), None
-    deck.error(
-        tie.card,
-        tie.card.at("SURFACE"),
-        f"no surface named {tie.surface}",
-        hint=nearest(tie.surface, mesh.edge_sets),
-    )
+    hint = nearest(tie.surface, mesh.edge_sets)
+    where = tie.card.at("SURFACE")
+    targets.deck.error(tie.card, where, f"no surface named {tie.surface}", hint=hint)
     return None, None
+
+
+#: Constraints that are not couplings, by kind.
+OTHERS = {
+    "straight": _straight,
+    "between": _between,
+    "same": _same,
+    "equation": _equations,
+}
