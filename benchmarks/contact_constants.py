@@ -63,8 +63,8 @@ SAMPLE: tuple[tuple[int, str], ...] = (
 DEAR, FEW = (1183, ""), 2
 SIZE, LIMIT = 0.5, 30
 FACTORS = (0.5, 2.0)
-#: Not varied: numbers of states, the width of a table of the core, names.
-NAMES = {"gaps.OPEN", "gaps.CLOSED", "gaps.SLIPPING", "pair.WIDTH", "contact.WITH_CONTACT"}
+#: Not varied: numbers of states, names.
+NAMES = {"gaps.OPEN", "gaps.CLOSED", "gaps.SLIPPING", "contact.WITH_CONTACT"}
 
 
 def counted() -> list[str]:

@@ -54,14 +54,15 @@ def test_rows_and_columns_are_derivatives(method, law):
         state[terms.area > 0.1 * pair.full] = [CLOSED, SLIPPING][pair.first > 0]
         state[terms.area <= 0.1 * pair.full] = OPEN
         states.append(state)
-        self.slip_directions[pair.first] = pair.slip_direction(terms, q)
+        self.slip_directions.append(pair.slip_direction(terms, q))
 
     def equations(z):
         """Force of contact and the rows of all constraints, with the states as they are."""
         touch = self.evaluate(z, 1.0).contact_state
         out = []
-        for (pair, terms, (p, q)), s in zip(self.pairs(touch), states, strict=True):
-            _, rp, _, rq, ratio, level = pair.rows(terms, s, p, q, self.slip_directions[pair.first])
+        each = zip(self.pairs(touch), states, self.slip_directions, strict=True)
+        for (pair, terms, (p, q)), s, slip_direction in each:
+            _, rp, _, rq, ratio, level = pair.rows(terms, s, p, q, slip_direction)
             out += [-rp, np.where(s == SLIPPING, q - ratio * p - level, -rq)]
         return touch.force, np.concatenate(out)
 
@@ -81,11 +82,11 @@ def test_rows_and_columns_are_derivatives(method, law):
     # Tractions that the matrix has not: those of open nodes, and of slipping ones, which are a
     # multiple of the pressure.
     gone = np.zeros(m, bool)
-    for pair, s in zip(self.term.pairs, states, strict=True):
+    for pair, s, slip_direction in zip(self.term.pairs, states, self.slip_directions, strict=True):
         first, second = pair.first, pair.first + pair.n
         gone[first:second], gone[second : first + pair.width] = s == OPEN, s != CLOSED
         slips = np.flatnonzero(s == SLIPPING)
-        follow = pair.friction[slips] * self.slip_directions[first][slips] * dp[first + slips]
+        follow = pair.friction[slips] * slip_direction[slips] * dp[first + slips]
         dz[n + first : n + second][s == OPEN] = 0.0
         dz[n + second : n + first + pair.width][s != CLOSED] = 0.0
         dz[n + second + slips] = follow

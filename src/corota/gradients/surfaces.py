@@ -252,7 +252,7 @@ def solve(
             "gradients with contact do not include follower loads without a potential (pressure on "
             "an edge with free ends)"
         )
-    contact.slip_directions = {pair.first: np.ones(pair.n) for pair in term.pairs}
+    contact.slip_directions = [np.ones(pair.n) for pair in term.pairs]
     right = RightHandSides(np.asfortranarray(rhs), np.asfortranarray(moved), np.zeros(rhs.shape[1]))
     z, y, _ = contact.solve(at, [s.copy() for s in surfaces.states], right)
     return z, y

@@ -16,10 +16,12 @@ import numpy as np
 
 from corota.analysis.terms.contact.gaps import (
     OPEN,
+    SAME,
     SLIPPING,
     ContactState,
     Terms,
     covered,
+    mean,
     no_contact,
 )
 from corota.analysis.terms.term import NO_NODES, NONE, Term, TermOutput
@@ -28,7 +30,7 @@ from corota.lazy import lazy
 from corota.model.contact import ContactPair, Tie
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -42,18 +44,19 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+    States = list[NDArray[np.int8]]
+    #: A pair, its gaps and slips, and its tractions p and q.
+    Each = tuple[Pair, Terms, tuple[Floats, Floats]]
 
 # Parts that models without contact do not need.
 check_side = lazy("corota.analysis.terms.contact.tunneling:check_side")
-corner_note = lazy("corota.analysis.terms.contact.messages:corner_note")
-fillet_note = lazy("corota.analysis.terms.contact.messages:fillet_note")
 guided_round_note = lazy("corota.analysis.terms.contact.messages:guided_round_note")
 contact_output = lazy("corota.analysis.terms.contact.output:output")
 what_gives_way = lazy("corota.analysis.terms.contact.messages:gives_way")
-partly_covered_note = lazy("corota.analysis.terms.contact.messages:partly_covered_note")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 near_side = lazy("corota.analysis.terms.contact.kinks:near_side")
 passed_through = lazy("corota.analysis.terms.contact.tunneling:passed_through")
+start_notes = lazy("corota.analysis.terms.contact.messages:start_notes")
 sunk_between = lazy("corota.analysis.terms.contact.messages:sunk_between")
 sunk_corner = lazy("corota.analysis.terms.contact.messages:sunk_corner")
 
@@ -210,8 +213,8 @@ class ContactTerm(Term):
         """Whether `states` have pressures, gaps and friction of an equilibrium; none slips."""
         contact = at.contact_state
         most = tolerance * max(float(np.abs(contact.multipliers).max(initial=0.0)), 1e-300)
-        parts = self.parts(contact.multipliers)
-        for pair, terms, (p, q), own in zip(self.pairs, contact.terms, parts, states, strict=True):
+        each = zip(self.each(contact.terms, contact.multipliers), states, strict=True)
+        for (pair, terms, (p, q)), own in each:
             if pair.tied:
                 continue
             deep = terms.gap < -tolerance * self.system.length * pair.full
@@ -279,7 +282,7 @@ class ContactTerm(Term):
             x = self.positions(self.u)
             for pair in self.pairs:
                 if not pair.tied:
-                    pair.persist(pair.evaluate(x, x, self.system.nlgeom))
+                    pair.start = pair.evaluate(x, x, self.system.nlgeom).parts
         if self.damps and self.opens:
             self._pressure = self._pressures()
         self.law_share = 1.0
@@ -343,18 +346,17 @@ class ContactTerm(Term):
             return
         check_side(self.system, pair, x)
         if pair.slave.pointwise:
-            self._keep_sides(pair, x)
+            # Lines keep the side that the other body is on at the start.
+            pair.core.search(x)
+            pair.core.evaluate(x, None)
+            pair.core.commit()
         mesh = self.system.model.mesh
-        found = fillet_note(pair), corner_note(pair, mesh.points, mesh.node_labels)
-        self.notes += filter(None, found)
         pair.core.search(x)
         raw = pair.core.evaluate(x, x)
         area = raw["total_area"]
         seen = covered(area, pair.full)
-        gap = np.where(seen, raw["total_gap"] / np.where(seen, area, 1.0), 0.0)
-        if self.number == 1:
-            note = partly_covered_note(pair, area, x[:, :2], mesh.node_labels)
-            self.notes += [note] if note else []
+        gap = mean(raw["total_gap"], area, pair.full)
+        self.notes += start_notes(pair, mesh, area if self.number == 1 else None, x[:, :2])
         if item.clearance is not None:
             pair.core.offset = np.where(seen, gap - item.clearance, 0.0)
             gap = np.where(seen, item.clearance, 0.0)
@@ -366,7 +368,7 @@ class ContactTerm(Term):
             moved = np.isin(pair.nodes, mesh.node_indices(item.adjust_nodes))
         deepest = int(np.argmin(gap))
         longest = float(pair.slave.length.max())
-        if gap[deepest] < -1e-9 * longest:
+        if gap[deepest] < -SAME * longest:
             how = {
                 "keep": "remains until the contact opens (start='ramp' removes it over the step)"
                 if explicit
@@ -393,12 +395,6 @@ class ContactTerm(Term):
         if not pair.separates:
             # What touches at the start has met.
             pair.closed = seen & (adjusted_gap <= pair.noise)
-
-    def _keep_sides(self, pair: Pair, x: Floats) -> None:
-        """Lines keep the side that the other body is on at the start."""
-        pair.core.search(x)
-        pair.core.evaluate(x, None)
-        pair.core.commit()
 
     def _start_tie(self, pair: Pair, x: Floats) -> None:
         pair.core.search(x)
@@ -444,6 +440,16 @@ class ContactTerm(Term):
             q = multipliers[pair.first + pair.n : pair.first + pair.width]
             out.append((p, q if pair.two else np.zeros(pair.n)))
         return out
+
+    def each(self, terms: list[Terms], multipliers: Floats) -> Iterator[Each]:
+        """Each pair with its terms and tractions p and q."""
+        return zip(self.pairs, terms, self.parts(multipliers), strict=True)
+
+    def states(self, terms: list[Terms], multipliers: Floats, last: States | None = None) -> States:
+        """States of the constraints of all pairs; see :meth:`Pair.states`."""
+        before: Sequence[NDArray[np.int8] | None] = last or [None] * len(self.pairs)
+        each = zip(self.each(terms, multipliers), before, strict=True)
+        return [pair.states(own, p, q, old) for (pair, own, (p, q)), old in each]
 
     def add(self, point: StatePoint, at: Evaluation) -> None:
         """Add the forces for given multipliers, and their gaps and slips."""
@@ -526,8 +532,8 @@ class ContactTerm(Term):
     ) -> Floats:
         """Pressures of chosen pairs on the nodes, shape (n_dofs,)."""
         force = np.zeros(self.system.n_dofs)
-        each = zip(self.pairs, terms, self.parts(multipliers), chosen, strict=True)
-        for pair, own, (p, _), mine in each:
+        each = zip(self.each(terms, multipliers), chosen, strict=True)
+        for (pair, own, (p, _)), mine in each:
             if mine:
                 none = np.zeros(pair.n)
                 pair.add_forces(own, self.dofs(own.variables), p, none, force, None)
@@ -603,13 +609,9 @@ class ContactTerm(Term):
         states = [np.zeros(pair.n, np.int8) for pair in self.pairs]
         if self.at is not None:
             states = self.at.states
-        for pair, terms, (p, q), begun, state in zip(
-            self.pairs,
-            contact_state.terms,
-            self.parts(contact_state.multipliers),
-            self.parts(self.committed),
-            states,
-            strict=True,
+        each = self.each(contact_state.terms, contact_state.multipliers)
+        for (pair, terms, (p, q)), begun, state in zip(
+            each, self.parts(self.committed), states, strict=True
         ):
             late = pair.beyond_trapezoid
             pair.commit(terms, p, q, begun, state)
@@ -619,18 +621,13 @@ class ContactTerm(Term):
         before, self._damping_force = self._damping_force, np.zeros(0)
         if contact_state.damping is not None:
             self._damping_force = contact_state.damping * (u - self.u)
-            mean = self._damping_force + (before if len(before) else 0.0)
-            self.damping_work += 0.5 * float(mean @ (u - self.u))
+            both = self._damping_force + (before if len(before) else 0.0)
+            self.damping_work += 0.5 * float(both @ (u - self.u))
         self.slip_start, self.overcome = None, ""
         moved, law = u - self.u, self.energies()["ALLCL"]
         contact_state.where = self.positions(0.5 * (self.u + u) if self.persistent else u)
         self.u, self.committed, self.time = u.copy(), contact_state.multipliers.copy(), step_time
-        contact_state.states = [
-            pair.states(terms, p, q)
-            for pair, terms, (p, q) in zip(
-                self.pairs, contact_state.terms, self.parts(self.committed), strict=True
-            )
-        ]
+        contact_state.states = self.states(contact_state.terms, self.committed)
         # Rounding leaves small tractions on open constraints.
         for pair, state, tractions in zip(
             self.pairs, contact_state.states, self.parts(self.committed), strict=True
@@ -641,7 +638,7 @@ class ContactTerm(Term):
         contact_state.acting = [terms.acting for terms in contact_state.terms]
         for i, (pair, terms) in enumerate(zip(self.pairs, contact_state.terms, strict=True)):
             if pair.start is not None:
-                pair.persist(terms)
+                pair.start = terms.parts
             contact_state.terms[i] = replace(terms.bare or terms, between=None)
         self.at = contact_state
         self._keep_law_force()

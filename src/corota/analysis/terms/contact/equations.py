@@ -94,10 +94,7 @@ class ContactEquations(ContactProblem):
             self.freeze()
             found = pivoted(self, at, right_sides)
             if found is not None:
-                z, self.last, slip_directions = found
-                self.slip_directions = {
-                    p.first: s for p, s in zip(self.term.pairs, slip_directions, strict=True)
-                }
+                z, self.last, self.slip_directions = found
                 self.pivoted += 1
                 self.stage = "contact states by pivoting"
                 return self.moved(z), -1
@@ -112,12 +109,9 @@ class ContactEquations(ContactProblem):
         """
         if self.last is None or self.size > SETTLED:
             return False
-        return all(
-            np.array_equal(pair.states(terms, p, q, last), last)
-            for (pair, terms, (p, q)), last in zip(
-                self.pairs(at.contact_state), self.last, strict=True
-            )
-        )
+        state = at.contact_state
+        now = self.term.states(state.terms, state.multipliers, self.last)
+        return all(np.array_equal(a, b) for a, b in zip(now, self.last, strict=True))
 
     def inherit_kink(self) -> None:
         """Begin at the kink at which the committed equilibrium lies, if there is one.

@@ -33,6 +33,7 @@ from corota.analysis.terms.contact.gaps import (
     HALVINGS,
     OPEN,
     SLIPPING,
+    SMALL,
     ContactState,
     covered,
 )
@@ -55,8 +56,6 @@ if TYPE_CHECKING:
 
 #: Entries of a matrix from which it is treated as sparse (cost alone).
 DENSE = 100_000
-#: Tolerance of data: depth, in edges, that a fixed surface may be pressed into another fixed one.
-DEPTH = 1e-6
 
 
 class NoForwardContact:
@@ -170,9 +169,7 @@ class ForwardContact:
     def _forces(self, found: list[Terms], multipliers: Floats) -> tuple[Floats, Floats]:
         contact, n = self.contact, self.contact.system.n_dofs
         force, size = np.zeros(n), np.zeros(n)
-        for pair, terms, (p, q) in zip(
-            contact.pairs, found, contact.parts(multipliers), strict=True
-        ):
+        for pair, terms, (p, q) in contact.each(found, multipliers):
             pair.add_forces(terms, contact.dofs(terms.variables), p, q, force, size)
         return force, size
 
@@ -191,9 +188,7 @@ class ForwardContact:
         self.pending = 0.5 * float(force @ ahead)
         account.contact += done
         account.impact += done
-        for i, (pair, terms, (_, q)) in enumerate(
-            zip(contact.pairs, found, contact.parts(multipliers), strict=True)
-        ):
+        for i, (pair, terms, (_, q)) in enumerate(contact.each(found, multipliers)):
             stored = pair.law_energy(contact.at.terms[i]) if contact.at is not None else 0.0
             seen = covered(terms.area, pair.full)
             pair.area = np.where(seen, terms.area, pair.full)
@@ -435,7 +430,7 @@ class _Increment:
                 continue
             k = slice(first, first + pair.n)
             length = np.where(self.seen[k], self.gap[k] / np.maximum(self.area[k], 1e-300), 0.0)
-            wrong = held[k] & (length < -DEPTH * float(pair.slave.length.mean()))
+            wrong = held[k] & (length < -SMALL * float(pair.slave.length.mean()))
             if wrong.any():
                 label = self.contact.label(pair, int(np.argmax(wrong)))
                 raise ConvergenceError(

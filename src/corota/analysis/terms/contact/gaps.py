@@ -33,6 +33,9 @@ OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Rounding bound: relative difference of lengths, areas, parts of a way and forces that is
 #: rounding.
 SAME = 1e-9
+#: Length over an edge that is none: depth that a fixed surface may be pressed into another fixed
+#: one, and the slip that turns the friction of a node round whose stiffness does not count.
+SMALL = 1e-6
 #: Regularization of redundant constraints: compliance of closed ones relative to that of their
 #: nodes: constraints that follow from others then leave a matrix regular, and share the force.
 COMPLIANCE = 1e-10
@@ -186,6 +189,12 @@ def covered(area: Floats, full: Floats) -> NDArray[np.bool_]:
     return found
 
 
+def mean(weighted: Floats, area: Floats, full: Floats, alone: Floats | float = 0.0) -> Floats:
+    """Weighted gaps or slips over their areas [length]; `alone` without an opposite surface."""
+    seen = covered(area, full)
+    return np.where(seen, weighted / np.where(seen, area, 1.0), alone)
+
+
 def no_contact() -> ContactState:
     """State without pairs, or evaluated without multipliers; new, since checkpoints fill it."""
     return ContactState([], np.zeros(0), np.zeros(0), np.zeros(0))
@@ -292,11 +301,13 @@ __all__ = [
     "PATIENCE",
     "SAME",
     "SLIPPING",
+    "SMALL",
     "WAITED",
     "ContactState",
     "Kink",
     "Terms",
     "covered",
     "discrete_gradient",
+    "mean",
     "no_contact",
 ]

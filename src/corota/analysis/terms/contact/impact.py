@@ -70,10 +70,8 @@ def impact_error(
                 depth = max(depth, float((deeper / pair.full).max()) / edge)
         return max(first, 0.1 * depth / tolerance)
     work = float(contact_state.force @ moved)
-    parts = term.parts(contact_state.multipliers)
-    for k, (pair, terms, (_, q)) in enumerate(
-        zip(term.pairs, contact_state.terms, parts, strict=True)
-    ):
+    each = term.each(contact_state.terms, contact_state.multipliers)
+    for k, (pair, terms, (_, q)) in enumerate(each):
         if pair.rubs:
             work -= float(q @ terms.slip)
         if pair.law is not None:
@@ -85,12 +83,10 @@ def impact_error(
 def _first_contact(term: ContactTerm, contact_state: ContactState, meets: bool) -> float:
     """How late the first contact of surfaces is found [slave edges]."""
     late = 0.0
-    parts = term.parts(contact_state.multipliers)
     before = term.at
     x = term.positions(term.u)
-    for number, (pair, terms, (p, q)) in enumerate(
-        zip(term.pairs, contact_state.terms, parts, strict=True)
-    ):
+    each = term.each(contact_state.terms, contact_state.multipliers)
+    for number, (pair, terms, (p, q)) in enumerate(each):
         if pair.tied or not pair.n or before is None or (meets and pair.start is None):
             continue
         begun = pair.gaps_at(term, number, x)

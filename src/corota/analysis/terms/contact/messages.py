@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import SAME, WAITED, covered
+from corota.analysis.terms.contact.gaps import SAME, WAITED, covered, mean
 from corota.analysis.terms.contact.setup import (
     CORNER,
     NONE,
@@ -111,8 +111,7 @@ def gives_way(contact_term: ContactTerm) -> str:
     """
     if contact_term.at is None:
         return ""
-    parts = contact_term.parts(contact_term.committed)
-    for pair, terms, (p, q) in zip(contact_term.pairs, contact_term.at.terms, parts, strict=True):
+    for pair, terms, (p, q) in contact_term.each(contact_term.at.terms, contact_term.committed):
         force = p * terms.area
         total = float(force.sum())
         if pair.tied or not total > 0.0:
@@ -177,6 +176,23 @@ def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
     return ""
 
 
+def start_notes(pair: Pair, mesh: Mesh, area: Floats | None, x: Floats) -> list[str]:
+    """Notes on a pair that begins to act.
+
+    Parameters
+    ----------
+    area : ndarray, shape (n,), or None
+        Areas of the constraints that have an opposite surface; None after the first step.
+    x : ndarray, shape (n_nodes, 2)
+        Positions at the start.
+    """
+    labels = mesh.node_labels
+    notes = [fillet_note(pair), corner_note(pair, mesh.points, labels)]
+    if area is not None:
+        notes.append(partly_covered_note(pair, area, x, labels))
+    return [note for note in notes if note]
+
+
 def fillet_note(pair: Pair) -> str:
     """A remark on round corners of a rigid curve that are too small for the slave edges, or ''."""
     curve = getattr(pair.item, "master", None)
@@ -235,13 +251,6 @@ def partly_covered_note(pair: Pair, area: Floats, x: Floats, labels: Ints) -> st
     """A remark on slave nodes at the ends of a master under a pressure law, or ''.
 
     With node_to_segment a node presses on its whole area, though the master covers a part of it.
-
-    Parameters
-    ----------
-    area : ndarray, shape (n,)
-        Areas of the constraints that have an opposite surface.
-    x : ndarray, shape (n_nodes, 2)
-        Positions at the start.
     """
     item, slave = pair.item, pair.slave
     pointwise = slave.pointwise or pair.beside is not None
@@ -385,9 +394,7 @@ def _deepest(pair: Pair, mesh: Mesh, x: Floats) -> tuple[float, int]:
         core = core_of(mesh, own, slave, master, pair.reach, pair.depth)
         core.search(x)
         found = core.evaluate(x)
-        area = found["total_area"]
-        seen = covered(area, np.asarray(core.full_area))
-        depth = np.where(seen, -found["total_gap"] / np.where(seen, area, 1.0), 0.0)
+        depth = mean(-found["total_gap"], found["total_area"], np.asarray(core.full_area))
         k = int(np.argmax(depth))
         if depth[k] > worst:
             worst, node = float(depth[k]), int(core.nodes[k])
@@ -395,12 +402,10 @@ def _deepest(pair: Pair, mesh: Mesh, x: Floats) -> tuple[float, int]:
 
 
 __all__ = [
-    "corner_note",
     "explanation",
-    "fillet_note",
     "gives_way",
     "guided_round_note",
-    "partly_covered_note",
+    "start_notes",
     "sunk_between",
     "sunk_corner",
 ]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import CLOSED, OPEN, covered
+from corota.analysis.terms.contact.gaps import CLOSED, OPEN, mean
 from corota.arrays import distinct
 
 if TYPE_CHECKING:
@@ -54,8 +54,7 @@ def output(
         terms, state = contact_state.terms[k], contact_state.states[k]
         acting, x = contact_state.acting[k], contact_state.where
         assert x is not None
-        seen = covered(terms.area, pair.full)
-        gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), pair.reach)
+        gap = mean(terms.gap, terms.area, pair.full, pair.reach)
         # Positive when the slave is pulled along its own edges' direction.
         rows = np.column_stack([p, q, gap, pair.slid, state])[pair.owner]
         if pair.tied:

@@ -15,10 +15,12 @@ from corota.analysis.terms.contact.gaps import (
     OPEN,
     SAME,
     SLIPPING,
+    SMALL,
     WAITED,
     Terms,
     covered,
     discrete_gradient,
+    mean,
 )
 from corota.analysis.terms.contact.setup import contact_core, tie_core
 from corota.arrays import distinct
@@ -56,11 +58,8 @@ WEAK = 0.2
 #: Discretization at the ends of the master: covered fraction above which a node takes its part back
 #: for good.
 AMPLE = 0.5
-#: Variables of a term, as in the core.
-WIDTH = 20
-#: Edges by which its friction would move a slave node whose stiffness does not count, and the slip
-#: in edges that turns this friction round.
-WEIGHTLESS, TURNS_ROUND = 0.1, 1e-6
+#: Edges by which its friction would move a slave node whose stiffness does not count.
+WEIGHTLESS = 0.1
 #: Friction work: share of the friction that a surface can bear above which it slides as a whole.
 TURNS_BACK = 0.5
 
@@ -154,7 +153,6 @@ class Pair:
         self.end_share = 0.5  # of the tractions at the end of an increment in their mean
         #: What of it the trapezoidal rule misses, of tractions that grew before the surfaces slid.
         self.beyond_trapezoid = 0.0
-        self.seen = False  # whether the surfaces have been near each other
         #: A rigid curve as straight pieces in the reference configuration, made when needed.
         self.chords: Floats | None = None
         #: Least extent of a body that the other side goes round, computed when needed.
@@ -347,19 +345,19 @@ class Pair:
     def _nothing(self) -> Terms:
         """Terms of a step in which the surfaces do not meet."""
         none, flat = np.zeros(self.n), np.zeros(0, np.int64)
-        variables, gradient = np.zeros((0, WIDTH), np.int64), np.zeros((0, WIDTH))
+        variables, gradient = np.zeros((0, 0), np.int64), np.zeros((0, 0))
         return Terms(none, none, none, flat, flat, variables, gradient, gradient, (none, none))
 
     def _since(self, terms: Terms) -> Terms:
         """Gaps of the persistency condition (Laursen & Chawla 1997).
 
         Contact acts only if the gap is closed at the start of the increment, and may not get
-        deeper. A pair
-        with a pressure law may get deeper.
+        deeper. A pair with a pressure law may get deeper.
         """
         if self.start is None or self.law is not None:
             return terms
-        start, far = self.begun()
+        start, area = self.begun()
+        far = (start > self.noise * self.full) | ~covered(area, self.full)
         gap = terms.gap - np.where(far, 0.0, np.minimum(start, 0.0))
         return replace(terms, gap=gap, area=np.where(far, 0.0, terms.area), bare=terms)
 
@@ -374,15 +372,11 @@ class Pair:
         apart |= (gap == 0.0) & ~covered(area, self.full)
         return self.law is not None or not bool(apart.all())
 
-    def begun(self) -> tuple[Floats, NDArray[np.bool_]]:
-        """Gaps that the increment began with, and where they were open."""
+    def begun(self) -> tuple[Floats, Floats]:
+        """Weighted gaps and areas that the increment began with."""
         assert self.start is not None
         gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
-        return gap, (gap > self.noise * self.full) | ~covered(area, self.full)
-
-    def persist(self, terms: Terms) -> None:
-        """Take the gaps of a state for the start of an increment."""
-        self.start = terms.parts
+        return gap, area
 
     def gap_of_start(self, terms: Terms) -> Floats:
         """Weighted gaps that the increment began with, shape (n,).
@@ -390,15 +384,13 @@ class Pair:
         Where a pressure law had no opposite surface, it begins with its first pressure, or with the
         gap of the end if it is open then.
         """
-        assert self.start is not None
-        gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
+        gap, area = self.begun()
         if self.law is None:
             return gap
         first = np.maximum(-self.conditions.start * self.area, terms.gap)
         return np.where(covered(area, self.full), gap, first)
 
     def _read(self, raw: _core._Gaps) -> Terms:
-        self.seen = self.seen or bool(len(raw["constraint"]))
         if self.beside is not None:
             area = raw["total_area"]
             if self.frozen:
@@ -466,17 +458,7 @@ class Pair:
 
         gap = at.gap + rise(at.gap_gradient, self.reference)
         slip = rise(at.slip_gradient, self.reference if self.tied else old)
-        return Terms(
-            gap,
-            slip,
-            at.area,
-            at.constraint,
-            at.pair,
-            at.variables,
-            at.gap_gradient,
-            at.slip_gradient,
-            (gap, at.area),
-        )
+        return replace(at, gap=gap, slip=slip, parts=(gap, at.area))
 
     def _frozen(self, offset: Floats) -> Terms:
         """Gaps of the reference configuration, and their gradients on the pairing there.
@@ -488,9 +470,7 @@ class Pair:
         open_ = self._read(self.core.evaluate(self.reference, self.reference))
         if self.tied:
             return open_
-        gap, area = open_.parts
-        seen = covered(area, self.full)
-        self.core.offset = offset + np.where(seen, gap / np.where(seen, area, 1.0), 0.0)
+        self.core.offset = offset + mean(*open_.parts, self.full)
         closed = self._read(self.core.evaluate(self.reference, self.reference))
         self.core.offset = offset
         return replace(closed, gap=open_.gap, parts=open_.parts)
@@ -506,7 +486,7 @@ class Pair:
         begin = None if self.start is None or self.law is None else self.gap_of_start(terms)
         stiffness = self.stiffness
         if q is not None and self.rubs:
-            by_sign = np.abs(q) / (TURNS_ROUND * self.edge)
+            by_sign = np.abs(q) / (SMALL * self.edge)
             stiffness = np.where(self.weightless(q), by_sign, stiffness)
         own = self.full, self.area, stiffness, begin, self.adhering
         friction = self.friction if self.rubs else None
@@ -635,6 +615,8 @@ class Pair:
         p, q : ndarray, shape (n,)
         force, size : ndarray, shape (n_dofs,)
         """
+        if not len(terms.constraint):
+            return
         gap, slip = terms.gap_gradient, terms.slip_gradient
         shear = q if self.two else None
         _core.add_contact_forces(terms.constraint, dofs, gap, slip, p, shear, force, size)
@@ -670,7 +652,7 @@ class Pair:
         was, self.area = self.area, np.where(seen, terms.area, self.full)
         self.committed_rate = self.rate
         if self.rubs:
-            slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
+            slip = mean(terms.slip, terms.area, self.full)
             self.slid += np.where(q != 0.0, slip, 0.0)
             areas = np.where(states != OPEN, was, 0.0), np.where(seen, terms.area, 0.0)
             self._rub(slip, areas, before, q, (q != 0.0) | (self.states(terms, p, q) != OPEN))

@@ -28,8 +28,6 @@ from corota.analysis.terms.contact.problem import RightHandSides
 from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
@@ -214,11 +212,7 @@ class ContactPathEquations(ContactEquations):
         state = at.contact_state
         if not state.settled:
             corrected = self.last if self.corrections else None
-            before: Sequence[NDArray[np.int8] | None] = corrected or [None] * len(self.term.pairs)
-            state.settled = [
-                pair.states(terms, p, q, last)
-                for (pair, terms, (p, q)), last in zip(self.pairs(state), before, strict=True)
-            ]
+            state.settled = self.term.states(state.terms, state.multipliers, corrected)
         return state.settled
 
 

@@ -26,7 +26,7 @@ import numpy as np
 
 from corota.analysis.terms.contact.gaps import SAME, covered
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
-from corota.analysis.terms.contact.problem import RightHandSides
+from corota.analysis.terms.contact.problem import RightHandSides, sticking
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -252,9 +252,7 @@ class Pivoting:
                 # What sticks would slip against its trial traction.
                 slips = (base[k] == SLIPPING) & (q != 0.0)
                 slip_directions[k] = np.where(slips, np.sign(q), pair.slip_direction(terms, q))
-        problem.slip_directions = {
-            p.first: s for p, s in zip(problem.term.pairs, slip_directions, strict=True)
-        }
+        problem.slip_directions = slip_directions
         force, rows = self._inputs(base, chosen, slip_directions)
         one = self.right_sides
         none = np.zeros_like(force)
@@ -478,12 +476,11 @@ class Pivoting:
 def pivoted(problem: ContactProblem, at: Evaluation, right_sides: RightHandSides) -> Found | None:
     """A correction with states from the whole linearized problem; None if there is none."""
     pairs = list(problem.pairs(at.contact_state))
-    first = [pair.states(terms, p, q) for pair, terms, (p, q) in pairs]
+    first = problem.term.states(at.contact_state.terms, at.contact_state.multipliers)
     starts = [first] if problem.last is None else [problem.last, first]
     # With all closed constraints sticking, bodies held by friction are constrained and the matrix
     # is symmetric.
-    bases = [[np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in b] for b in starts]
-    bases += [[s.copy() for s in b] for b in starts]
+    bases = [sticking(b) for b in starts] + [[s.copy() for s in b] for b in starts]
     for base in bases:
         for s, (pair, terms, _) in zip(base, pairs, strict=True):
             s[~covered(terms.area, pair.full)] = OPEN

@@ -30,19 +30,21 @@ from corota.analysis.terms.contact.gaps import (
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
+    from corota.analysis.terms.contact.contact import Each
     from corota.analysis.terms.contact.gaps import ContactState, Kink, Terms
     from corota.analysis.terms.contact.pair import Pair
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
-    Each = tuple[Pair, Terms, tuple[Floats, Floats]]
+    #: Corrections of dofs and multipliers, and negative pivots; -1 if not symmetric.
+    Solution = tuple[Floats, Floats, int]
     Linearized = tuple[Coupling, Floats, int, list[tuple[Floats, Floats]]]
 
 #: Merit of a correction: fraction of the friction bound from which it is repeated with slip.
@@ -128,8 +130,8 @@ class ContactProblem:
         self.first_move = 0.0
         #: Bodies that were unconstrained until contact was closed.
         self.loose = ""
-        #: Signs of slipping tractions, by the pair's first multiplier.
-        self.slip_directions: dict[int, Floats] = {}
+        #: Signs of slipping tractions of each pair.
+        self.slip_directions: list[Floats] = []
 
     def go_on(self) -> None:
         """Begin again at the equilibrium that was found, with its states."""
@@ -170,9 +172,8 @@ class ContactProblem:
         for pair in self.term.pairs:
             pair.freeze(self.corrections)
 
-    def solve(
-        self, at: Evaluation, states: States, right_sides: RightHandSides
-    ) -> tuple[Floats, Floats, int]:
+    def solve(self, at: Evaluation, states: States, right_sides: RightHandSides) -> Solution:
+        """Corrections of dofs and multipliers for states, and negative pivots of the bodies."""
         coupling, own, expected, slopes = self.coupling(at.contact_state, states)
         force = right_sides.force + self.system.at_nodes(coupling.force)[:, None] * right_sides.own
         rows = own[:, None] * right_sides.own
@@ -203,12 +204,7 @@ class ContactProblem:
         return border
 
     def pairs(self, contact_state: ContactState) -> Iterator[Each]:
-        return zip(
-            self.term.pairs,
-            contact_state.terms,
-            self.term.parts(contact_state.multipliers),
-            strict=True,
-        )
+        return self.term.each(contact_state.terms, contact_state.multipliers)
 
     def gap_rates(
         self, at: Evaluation, du: Floats, only: int | None = None
@@ -236,11 +232,7 @@ class ContactProblem:
 
     def chosen(self, contact_state: ContactState) -> States:
         """States for the next correction; the whole linearized problem once a set comes back."""
-        before: Sequence[NDArray[np.int8] | None] = self.last or [None] * len(self.term.pairs)
-        wanted = [
-            pair.states(terms, p, q, last)
-            for (pair, terms, (p, q)), last in zip(self.pairs(contact_state), before, strict=True)
-        ]
+        wanted = self.term.states(contact_state.terms, contact_state.multipliers, self.last)
         if self.last is not None:
             changed = [a != b for a, b in zip(wanted, self.last, strict=True)]
             for flips, new in zip(self.flips, changed, strict=True):
@@ -266,43 +258,36 @@ class ContactProblem:
     ) -> tuple[Floats, int]:
         """Solutions of one linearization, shape (n_dofs + n_multipliers, k)."""
         self.freeze()
-        self.slip_directions = {
-            pair.first: pair.slip_direction(terms, q)
-            for pair, terms, (p, q) in self.pairs(at.contact_state)
-        }
+        self.slip_directions = [
+            pair.slip_direction(terms, q) for pair, terms, (_, q) in self.pairs(at.contact_state)
+        ]
         for (k, i), slip_direction in (slip_directions or {}).items():
-            self.slip_directions[self.term.pairs[k].first][i] = slip_direction
-        du, dp, negative, _ = self._held(at, states, right_sides)
+            self.slip_directions[k][i] = slip_direction
+        du, dp, negative = self._held(at, states, right_sides)
         return np.concatenate([du, dp]), negative
 
-    def _held(
-        self, at: Evaluation, states: States, right_sides: RightHandSides
-    ) -> tuple[Floats, Floats, int, States]:
+    def _held(self, at: Evaluation, states: States, right_sides: RightHandSides) -> Solution:
         """Correction for states that constrain the bodies.
 
         Where all nodes in contact with a body slip at once, it is unconstrained: they must stick.
         """
         if not self.holds:
-            return *self.solve(at, states, right_sides), states
+            return self.solve(at, states, right_sides)
         slipping = any((s == SLIPPING).any() for s in states)
-        tries, stuck = [states], states
-        if slipping:
-            stuck = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
-            tries.append(stuck)
+        stuck = sticking(states) if slipping else states
         reason: SingularError | None = None
-        for tried in tries:
+        for tried in [states, stuck] if slipping else [states]:
             try:
-                du, dp, negative = self.solve(at, tried, right_sides)
+                found = self.solve(at, tried, right_sides)
             except SingularError as error:
                 reason = error
                 self.sliding += slipping
                 continue
-            if tried is not stuck and slipping and self._far(du, right_sides):
+            if tried is not stuck and slipping and self._far(found[0], right_sides):
                 self.sliding += 1
                 continue
-            du, dp, negative, tried = self._let_slip(at, tried, right_sides, (du, dp, negative))
-            self.last = tried
-            return du, dp, negative, tried
+            found, self.last = self._let_slip(at, tried, right_sides, found)
+            return found
         assert reason is not None
         return self._close_some(at, stuck, right_sides, reason)
 
@@ -311,8 +296,8 @@ class ContactProblem:
         at: Evaluation,
         states: States,
         right_sides: RightHandSides,
-        found: tuple[Floats, Floats, int],
-    ) -> tuple[Floats, Floats, int, States]:
+        found: Solution,
+    ) -> tuple[Solution, States]:
         """Let constraints slip at once that a correction would load far beyond friction.
 
         Otherwise a large displacement of supports distorts the mesh before anything slips. What
@@ -320,11 +305,11 @@ class ContactProblem:
         """
         early, border = self.corrections <= 2 and not self.bounded, self.border
         if not (early or border.left.any() or border.left_by_others.any()):
-            return *found, states
+            return found, states
         released = [np.zeros(p.n, bool) for p in self.term.pairs]
         for _ in range(WAITED):
             new = [s.copy() for s in states]
-            slip_directions = dict(self.slip_directions)
+            slip_directions = list(self.slip_directions)
             rates = self.gap_rates(at, found[0][:, 0]) if any(r.any() for r in released) else None
             turned = False
             for k, (s, (pair, terms, (p, q))) in enumerate(
@@ -346,7 +331,7 @@ class ContactProblem:
                 if early:
                     over = over | (s == CLOSED) & (np.abs(q1) > FRICTION_EXCESS * bound)
                 s[over] = SLIPPING
-                slip_direction = self.slip_directions[pair.first]
+                slip_direction = self.slip_directions[k]
                 slip_direction = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction)
                 if rates is not None:
                     # What stuck without traction, or goes far, takes the direction of its slip.
@@ -355,7 +340,7 @@ class ContactProblem:
                     slip_direction = np.where(wrong, -slip_direction, slip_direction)
                     turned = turned or bool(wrong.any())
                 released[k] |= over
-                slip_directions[pair.first] = slip_direction
+                slip_directions[k] = slip_direction
             same = all(np.array_equal(a, b) for a, b in zip(new, states, strict=True))
             if same and not turned:
                 break
@@ -369,7 +354,7 @@ class ContactProblem:
                 self.slip_directions = before
                 break
             found, states = other, new
-        return *found, states
+        return found, states
 
     def _far(self, du: Floats, right_sides: RightHandSides) -> bool:
         """Whether a correction moves the surfaces beyond the contact search distance."""
@@ -389,7 +374,7 @@ class ContactProblem:
         states: States,
         right_sides: RightHandSides,
         error: SingularError,
-    ) -> tuple[Floats, Floats, int, States]:
+    ) -> Solution:
         """Bring unconstrained bodies into contact: close the nearest nodes, increasingly many."""
         gaps = [
             np.where((s == OPEN) & (not pair.tied), pair.trial(terms, p)[0], np.inf)
@@ -408,11 +393,11 @@ class ContactProblem:
             if all(np.array_equal(a, b) for a, b in zip(tried, states, strict=True)):
                 break
             try:
-                du, dp, negative = self.solve(at, tried, right_sides)
+                found = self.solve(at, tried, right_sides)
             except SingularError:
                 continue
             self.last, self.loose = tried, str(error)
-            return du, dp, negative, tried
+            return found
         open_pairs = [
             pair.name
             for pair, s in zip(self.term.pairs, states, strict=True)
@@ -429,8 +414,13 @@ class ContactProblem:
         raise error
 
 
+def sticking(states: States) -> States:
+    """States in which what slips sticks."""
+    return [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
+
+
 def linearized(
-    term: ContactTerm, at: ContactState, states: States, slip_directions: dict[int, Floats]
+    term: ContactTerm, at: ContactState, states: States, slip_directions: list[Floats]
 ) -> Linearized:
     """The border for states, its right-hand side, and its negative pivots.
 
@@ -439,17 +429,17 @@ def linearized(
 
     Parameters
     ----------
-    slip_directions : dict of int to ndarray
-        Signs of slipping tractions, by the pair's first multiplier.
+    slip_directions : list of ndarray
+        Signs of slipping tractions of each pair.
     """
     geometric_stiffness, skew, rows, follow, slopes = [], [], [], [], []
     diagonal, rhs = np.ones(term.n), np.zeros(term.n)
     force = np.zeros(term.system.n_dofs)
     expected = 0
-    parts = term.parts(at.multipliers)
-    for pair, terms, (p, q), state in zip(term.pairs, at.terms, parts, states, strict=True):
+    each = zip(term.each(at.terms, at.multipliers), states, slip_directions, strict=True)
+    for (pair, terms, (p, q)), state, slip_direction in each:
         first, second, end = pair.first, pair.first + pair.n, pair.first + pair.width
-        dp, rp, dq, rq, ratio, level = pair.rows(terms, state, p, q, slip_directions[first])
+        dp, rp, dq, rq, ratio, level = pair.rows(terms, state, p, q, slip_direction)
         slopes.append((ratio, level))
         closed, sticks, share = state != OPEN, state == CLOSED, term.share(pair)
         diagonal[first:second], rhs[first:second] = share * dp, share * rp
@@ -614,11 +604,9 @@ def linearized_contact(
     if states is None and term.at is not None and term.at.states:
         states = term.at.states
     elif states is None:
-        states = [
-            pair.states(terms, p, q) for pair, terms, (p, q) in contact.pairs(at.contact_state)
-        ]
-    states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
-    contact.slip_directions = {p.first: np.ones(p.n) for p in term.pairs}
+        states = term.states(at.contact_state.terms, multipliers)
+    states = sticking(states)
+    contact.slip_directions = [np.ones(pair.n) for pair in term.pairs]
     coupling, residuals, _, _ = contact.coupling(at.contact_state, states)
     own, hard = np.zeros(term.n), np.zeros(term.n, bool)
     for pair in term.pairs:

@@ -202,21 +202,15 @@ class _Creep:
             return False
         return self._largest(z[: self.problem.n] - self.within) > self.farthest
 
-    def _begin(self, share: float) -> None:
-        """Attach springs of a fraction of the nodal stiffness to the present position."""
-        problem = self.problem
-        states = problem.last
-        problem.forget()
-        problem.last, problem.relaxing = states, True
-        problem.since = self.z[: problem.n].copy()
-        if share:
-            problem.term.springs = (share * self.stiffness, problem.since)
-
     def _place(self, share: float) -> Outcome:
         """The next position, with springs of a fraction of the nodal stiffness."""
         problem, n, rule = self.problem, self.problem.n, self.problem.rule
         states = problem.last
-        self._begin(share)
+        problem.forget()
+        problem.last, problem.relaxing = states, True
+        problem.since = self.z[:n].copy()
+        if share:
+            problem.term.springs = (share * self.stiffness, problem.since)
         target = self.z.copy()
         target[:n] += self.left
         settings = self.each if share else self.last

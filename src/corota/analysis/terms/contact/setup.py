@@ -113,6 +113,24 @@ if TYPE_CHECKING:
     Core = tuple[_core.Contact, Surface, Surface | None, float, float]
 
 
+def _refused(item: ContactPair | Tie, why: str) -> ModelError:
+    """The error of a pair or tie that is refused."""
+    kind = "tie" if isinstance(item, Tie) else "contact pair"
+    return ModelError(f"{kind} {item.name!r}: {why}", item.where)
+
+
+def _start(mesh: Mesh) -> Floats:
+    """Positions and rotations at the start, shape (n_nodes, 3)."""
+    return np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
+
+
+def _reference(curve: RigidCurve) -> tuple[int, tuple[float, float]]:
+    """Node that a curve follows, -1 for none, and the point of a fixed one."""
+    if curve.reference is None or isinstance(curve.reference, tuple):
+        return -1, curve.reference or (0.0, 0.0)
+    return int(curve.reference), (0.0, 0.0)
+
+
 def carrier(system: NumberedModel, side: Surface | None) -> int | None:
     """Reference node of a rigid body that is part of the body of a surface and turns with it."""
     if side is None:
@@ -154,10 +172,10 @@ def line_surface(system: NumberedModel, name: str, edges: Ints, item: ContactPai
         width[here] = section.profile[0] / (section.line_height or np.sqrt(section.profile[0]))
     if (half < 0.0).any():
         cell = mesh.cell_labels[int(edges[int(np.argmin(half)), 0])]
-        raise ModelError(
-            f"contact pair {item.name!r}: element {cell} of surface {name!r} has no section of a "
+        raise _refused(
+            item,
+            f"element {cell} of surface {name!r} has no section of a "
             "beam or truss; springs have no surface",
-            item.where,
         )
     length = np.hypot(*(mesh.points[nodes[:, 1]] - mesh.points[nodes[:, 0]]).T)
     return Surface(name, edges, nodes, bulge, width, length, half)
@@ -166,7 +184,7 @@ def line_surface(system: NumberedModel, name: str, edges: Ints, item: ContactPai
 def node_surface(system: NumberedModel, name: str, nodes: Ints, item: ContactPair | Tie) -> Surface:
     """Single nodes as a slave surface without thickness, each with the area 1."""
     if not len(nodes):
-        raise ModelError(f"contact pair {item.name!r}: node set {name!r} is empty", item.where)
+        raise _refused(item, f"node set {name!r} is empty")
     spacing = _spacing(system)[nodes]
     edges, flat = np.zeros((0, 3), np.int64), np.zeros(0)
     return Surface(name, edges[:, :2], edges, flat, flat, spacing, flat, distinct(nodes))
@@ -202,31 +220,23 @@ def line_core(
     ModelError
         If such a pair is not supported.
     """
-    mesh = system.model.mesh
     _check_lines(system, item, slave, master)
     slave.pointwise = True
-    wide = max(0.0, slave.half.max(initial=0.0), *_half(master))
-    reach += wide
-    x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
+    sides = [slave] if isinstance(master, RigidCurve) else [slave, master]
+    reach += max(0.0, *(float(side.half.max(initial=0.0)) for side in sides))
     flat = np.zeros(0)
-    none = (np.zeros((0, 3), np.int64), flat, flat)
-    rigid = None
-    other = none
+    other = none = (np.zeros((0, 3), np.int64), flat, flat)
+    rigid = body = None
     if isinstance(master, RigidCurve):
-        reference = master.reference
-        point = reference if isinstance(reference, tuple) else (0.0, 0.0)
-        node = -1 if reference is None or isinstance(reference, tuple) else int(reference)
-        rigid = (master.backward, node, point, master.turns)
+        rigid = (master.backward, *_reference(master), master.turns)
     else:
-        other = (master.nodes, master.bulge, master.half)
+        body, other = master, (master.nodes, master.bulge, master.half)
     tied = isinstance(item, Tie)
-    points = slave.points if slave.points is not None else np.zeros(0, np.int64)
-    if tied and slave.points is None:
-        points = slave.node_list
+    points = slave.node_list if tied or slave.points is not None else np.zeros(0, np.int64)
     own = none if len(points) else (slave.nodes, slave.bulge, slave.half)
     try:
         core = _core.line_contact(
-            x,
+            _start(system.model.mesh),
             own,
             slave.thickness if not len(points) else flat,
             points,
@@ -238,14 +248,9 @@ def line_core(
             depth=depth,
         )
     except ValueError as error:
-        raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
-    body = None if isinstance(master, RigidCurve) else master
+        raise _refused(item, str(error)) from None
     core.carry(carrier(system, slave), carrier(system, body))
     return core, slave, body, reach, depth
-
-
-def _half(master: Surface | RigidCurve) -> list[float]:
-    return [] if isinstance(master, RigidCurve) else [float(master.half.max(initial=0.0))]
 
 
 def _check_lines(
@@ -254,28 +259,25 @@ def _check_lines(
     slave: Surface,
     master: Surface | RigidCurve,
 ) -> None:
-    kind = "tie" if isinstance(item, Tie) else "contact pair"
     if getattr(item, "smooth", False):
-        raise ModelError(
-            f"contact pair {item.name!r}: a pair with a line or with single nodes is not smoothed; "
-            "leave smooth out",
-            item.where,
+        raise _refused(
+            item, "a pair with a line or with single nodes is not smoothed; leave smooth out"
         )
     if isinstance(master, RigidCurve):
         return
     if master.points is not None:
-        raise ModelError(
-            f"{kind} {item.name!r}: a master needs edges or lines, and {master.name!r} is a node "
+        raise _refused(
+            item,
+            f"a master needs edges or lines, and {master.name!r} is a node "
             "set; exchange slave and master",
-            item.where,
         )
     shared = np.intersect1d(slave.node_list, master.node_list)
     if len(shared):
-        raise ModelError(
-            f"{kind} {item.name!r}: {slave.name!r} and {master.name!r} share node "
+        raise _refused(
+            item,
+            f"{slave.name!r} and {master.name!r} share node "
             f"{system.model.mesh.node_labels[shared[0]]}, so they cannot separate there; remove "
             "it from one of them",
-            item.where,
         )
 
 
@@ -337,29 +339,22 @@ def smoothed(points: Floats, master: Surface) -> tuple[Ints, Floats, Ints]:
 
 def blunt_turns(points: Floats, master: Surface) -> dict[int, float]:
     """Nodes at which a boundary turns, but not sharply, with the angles [rad]."""
-    sides = [side for row in master.nodes.tolist() for side in _sides(row)]
-    after = dict(sides)
-    out = {}
-    for a, b in sides:
-        if b not in after:
-            continue
-        (ax, ay), (bx, by) = points[b] - points[a], points[after[b]] - points[b]
-        turn = abs(math.atan2(ax * by - ay * bx, ax * bx + ay * by))
-        if NONE < turn < CORNER:
-            out[b] = turn
-    return out
+    turns = _turns(points, [side for row in master.nodes.tolist() for side in _sides(row)])
+    return {node: abs(turn) for node, turn in turns.items() if NONE < abs(turn) < CORNER}
 
 
 def sharp_corners(x: Floats, edges: Ints) -> list[int]:
     """Nodes at which a boundary with the body on its left turns left by more than `CORNER`."""
-    after = dict(edges.tolist())
-    out = []
-    for a, b in edges.tolist():
-        if b not in after:
-            continue
-        (ax, ay), (bx, by) = x[b] - x[a], x[after[b]] - x[b]
-        if math.atan2(ax * by - ay * bx, ax * bx + ay * by) > CORNER:
-            out.append(b)
+    return [node for node, turn in _turns(x, edges.tolist()).items() if turn > CORNER]
+
+
+def _turns(x: Floats, sides: list[tuple[int, int]]) -> dict[int, float]:
+    """Angles to the left by which a boundary turns at the ends of its sides [rad]."""
+    after, out = dict(sides), {}
+    for a, b in sides:
+        if b in after:
+            (ax, ay), (bx, by) = x[b] - x[a], x[after[b]] - x[b]
+            out[b] = math.atan2(ax * by - ay * bx, ax * bx + ay * by)
     return out
 
 
@@ -389,34 +384,31 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
             return node_surface(system, where, mesh.node_sets[where], item)
         if where not in mesh.edge_sets:
             known = ", ".join(mesh.edge_sets) or "none"
-            raise ModelError(
-                f"contact pair {item.name!r}: no surface named {where!r}; there are: {known}",
-                item.where,
-            )
+            raise _refused(item, f"no surface named {where!r}; there are: {known}")
         edges = mesh.edge_sets[where]
     else:
         edges = np.asarray(where, np.int64).reshape(-1, 2)
     if not len(edges):
-        raise ModelError(f"contact pair {item.name!r}: surface {name!r} is empty", item.where)
+        raise _refused(item, f"surface {name!r} is empty")
     edges = edges[np.sort(np.unique(edges, axis=0, return_index=True)[1])]
     lines = mesh.are_lines(edges[:, 0])
     if lines.all():
         return line_surface(system, name, edges, item)
     if lines.any():
         cell = mesh.cell_labels[int(edges[int(np.argmax(lines)), 0])]
-        raise ModelError(
-            f"contact pair {item.name!r}: surface {name!r} has edges of bodies and the line "
+        raise _refused(
+            item,
+            f"surface {name!r} has edges of bodies and the line "
             f"{cell}; make two surfaces, and a pair of each",
-            item.where,
         )
     inner = ~_among(edges, mesh.boundary_edges())
     if inner.any():
         cell = int(edges[int(np.argmax(inner)), 0])
-        raise ModelError(
-            f"contact pair {item.name!r}: surface {name!r} is not on the boundary: "
+        raise _refused(
+            item,
+            f"surface {name!r} is not on the boundary: "
             f"{int(inner.sum())} of its {len(edges)} edges lie between elements, the first at "
             f"element {mesh.cell_labels[cell]}; take outer edges only",
-            item.where,
         )
     n = len(edges)
     nodes = np.full((n, 3), -1, np.int64)
@@ -438,10 +430,9 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
             found[here] = True
     if not found.all():
         cell = int(edges[int(np.argmin(found)), 0])
-        raise ModelError(
-            f"contact pair {item.name!r}: element {mesh.cell_labels[cell]} of surface {name!r} "
-            "has no section, or no such edge",
-            item.where,
+        raise _refused(
+            item,
+            f"element {mesh.cell_labels[cell]} of surface {name!r} has no section, or no such edge",
         )
     length = np.hypot(*(mesh.points[nodes[:, 1]] - mesh.points[nodes[:, 0]]).T)
     return Surface(name, edges, nodes, bulge, thickness, length, np.full(n, -1.0))
@@ -473,14 +464,14 @@ def along_contour(found: Surface, points: Floats) -> Surface:
             contour.append(at)
             at = follower.get(int(found.nodes[at, 1]))
         if contour and at == first:
-            turn = _turns(points, found.nodes[contour])
+            turn = _turns_of_contour(points, found.nodes[contour])
             begin = int(np.argmin(turn))
             contour = contour[begin:] + contour[:begin]
         order += contour
     return found.take(np.array(order, np.int64))
 
 
-def _turns(points: Floats, nodes: Ints) -> Floats:
+def _turns_of_contour(points: Floats, nodes: Ints) -> Floats:
     """Angle to each edge of a closed contour from the one before it, negative inwards."""
     along = points[nodes[:, 1]] - points[nodes[:, 0]]
     before = np.roll(along, 1, axis=0)
@@ -510,10 +501,10 @@ def contact_core(system: NumberedModel, item: ContactPair) -> Core:
     reach = item.reach or REACH * longest
     if of_lines(slave) or (master is not None and of_lines(master)):
         if item.itself:
-            raise ModelError(
-                f"contact pair {item.name!r}: a line, or single nodes, cannot meet themselves; "
+            raise _refused(
+                item,
+                "a line, or single nodes, cannot meet themselves; "
                 "make two surfaces of the parts that meet",
-                item.where,
             )
         against = item.master if isinstance(item.master, RigidCurve) else master
         assert against is not None
@@ -569,8 +560,7 @@ def core_of(
     ModelError
         If the core refuses it.
     """
-    x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
-    own = x, slave.nodes, slave.bulge, slave.thickness
+    own = _start(mesh), slave.nodes, slave.bulge, slave.thickness
     # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
     facts: Any = {
         "method": item.method,
@@ -582,12 +572,7 @@ def core_of(
         if item.itself:
             return _core.Contact.itself(*own, **facts)
         if isinstance(item.master, RigidCurve):
-            reference = item.master.reference
-            node, point = -1, (0.0, 0.0)
-            if isinstance(reference, tuple):
-                point = reference
-            elif reference is not None:
-                node = int(reference)
+            node, point = _reference(item.master)
             rows, turns = item.master.backward, item.master.turns
             return _core.Contact.rigid(*own, rows, node, point, turns=turns, depth=depth, **facts)
         assert master is not None
@@ -596,7 +581,7 @@ def core_of(
             nodes, bulge, shapes = smoothed(mesh.points, master)
         return _core.Contact.edges(*own, nodes, bulge, master_shapes=shapes, depth=depth, **facts)
     except ValueError as error:
-        raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
+        raise _refused(item, str(error)) from None
 
 
 def of_lines(side: Surface) -> bool:
@@ -633,8 +618,6 @@ def _thickness(system: NumberedModel, slave: Surface) -> Floats:
 
 def tie_core(system: NumberedModel, item: Tie) -> Core:
     """Pair of the core for a tie; slave edges out of its tolerance are not tied."""
-    mesh = system.model.mesh
-    x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
     slave, master = surface(system, item.slave, item), surface(system, item.master, item)
     longest = float(max(slave.length.max(), master.length.max()))
     reach = item.tolerance or 0.1 * longest
@@ -643,7 +626,7 @@ def tie_core(system: NumberedModel, item: Tie) -> Core:
     _check_pair(system, item, slave, master)
     try:
         core = _core.Contact.edges(
-            x,
+            _start(system.model.mesh),
             slave.nodes,
             slave.bulge,
             slave.thickness,
@@ -654,7 +637,7 @@ def tie_core(system: NumberedModel, item: Tie) -> Core:
             margin=reach,
         )
     except ValueError as error:
-        raise ModelError(f"tie {item.name!r}: {error}", item.where) from None
+        raise _refused(item, str(error)) from None
     return core, slave, master, reach, np.inf
 
 
@@ -662,37 +645,36 @@ def _check_pair(
     system: NumberedModel, item: ContactPair | Tie, slave: Surface, master: Surface
 ) -> None:
     mesh = system.model.mesh
-    kind = "tie" if isinstance(item, Tie) else "contact pair"
     imaged = isinstance(item, ContactPair) and item.images is not None
     both = _among(slave.edges, master.edges)
     if both.any() and not imaged:
         cell = mesh.cell_labels[int(slave.edges[int(np.argmax(both)), 0])]
-        raise ModelError(
-            f"{kind} {item.name!r}: {int(both.sum())} edges are on both surfaces, {slave.name!r} "
+        raise _refused(
+            item,
+            f"{int(both.sum())} edges are on both surfaces, {slave.name!r} "
             f"and {master.name!r}, the first at element {cell}; remove them from one, or name "
             "the same surface twice for self-contact",
-            item.where,
         )
     if isinstance(item, Tie):
         return
     shared = np.intersect1d(slave.node_list, master.node_list)
     if len(shared):
-        raise ModelError(
-            f"contact pair {item.name!r}: surfaces {slave.name!r} and {master.name!r} share node "
+        raise _refused(
+            item,
+            f"surfaces {slave.name!r} and {master.name!r} share node "
             f"{mesh.node_labels[shared[0]]}, so they cannot separate there; remove its edges "
             "from one of them, give each body its own nodes, or use self-contact of one surface",
-            item.where,
         )
     out_s, out_m = _normals(mesh.points, slave), _normals(mesh.points, master)
     # No edges face each other: bodies may rotate, but not before contact.
     facing = -(out_s @ out_m.T).min() if len(out_s) * len(out_m) <= MOST_LOOKED_AT else 1.0
     towards = _towards(mesh.points, slave, master, out_s)
     if facing <= 0.0 or not towards:
-        raise ModelError(
-            f"contact pair {item.name!r}: no edge of {slave.name!r} faces any edge of "
+        raise _refused(
+            item,
+            f"no edge of {slave.name!r} faces any edge of "
             f"{master.name!r} (their outward normals point away from each other); select the "
             "sides that face each other",
-            item.where,
         )
 
 
