@@ -5,8 +5,8 @@ Time of first contact of separate surfaces, so that a dynamic increment can end 
 A wall does not act on a body in flight, and an increment limited only by its own error may end
 at any depth behind it. The time to contact follows from gap, closing velocity and acceleration of
 the body. At larger distance an increment covers most of the gap, because the estimate improves as
-the
-surfaces approach; the last one ends a ten-thousandth of an edge behind the first contact.
+the surfaces approach; the last one ends a ten-thousandth of an edge behind the first contact.
+Beyond the search distance there is no gap yet: an increment that passes through is refused and cut.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -19,7 +19,6 @@ import numpy as np
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.gaps import PATIENCE, covered
 from corota.analysis.terms.contact.pair import OPEN
-from corota.analysis.terms.contact.tunneling import UNSEEN, other_side, times_of_crossing
 from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
@@ -168,10 +167,6 @@ class Approach:
                 continue
             seen = apart & covered(terms.area, pair.full)
             time, meets = _time_to_contact(pair, terms, seen, rates, acceleration)
-            if not seen.all():
-                farther = _time_in_reach(pair, apart & ~seen, x, rates, min(time, until))
-                if farther < time:
-                    time, meets = farther, False
             if time < until:
                 until, self.meets, self.limited = time, meets, True
         return max(until, min(least, dt))
@@ -234,36 +229,6 @@ def _time_to_contact(
     time = np.where(meets, 2.0 * way / np.where(meets, root, 1.0), np.inf)
     first = int(np.argmin(time))
     return float(time[first]), not bool(wide[first])
-
-
-def _time_in_reach(
-    pair: Pair, which: NDArray[np.bool_], x: Floats, rates: Floats, dt: float
-) -> float:
-    """Time after which distant surfaces are near each other, if that is before `dt`."""
-    if not np.isfinite(dt):
-        return np.inf
-    new = x + dt * rates
-    first, last, ends = other_side(pair, x, new)
-    if not len(first):
-        return np.inf
-    nodes = pair.nodes[which]
-    drift = (last - first).reshape(-1, 2)
-    mean = drift.mean(axis=0)
-    spread = np.hypot(*(drift - mean).T).max()
-    move = new[:, :2] - x[:, :2]
-    nodes = nodes[np.hypot(*(move[nodes] - mean).T) + spread > UNSEEN * pair.reach]
-    if not len(nodes):
-        return np.inf
-    times = times_of_crossing(first, last, ends, x, new, nodes, np.zeros(len(nodes)))
-    when = float(times.min())
-    if not np.isfinite(when):
-        return np.inf
-    nodes = nodes[np.isfinite(times)]
-    # Half of the distance, or all up to the reach, within which gaps and closing velocities are
-    # known.
-    way = float(np.hypot(*(move[nodes] - mean).T).max())
-    share: float = max(0.5, 1.0 - 0.25 * pair.reach / way)
-    return share * when * dt
 
 
 __all__ = ["Approach", "impact_error"]
