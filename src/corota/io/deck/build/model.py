@@ -81,11 +81,11 @@ class ModelBuilder:
         if pretension is not None:
             pretension.join(targets)
         if deck.attached or deck.properties:
-            build_attachments(deck, model, targets.nodes, targets.rotating)
+            build_attachments(targets)
         model.supports += self.loads.supports(deck.supports)
         self._enter("model")
         if deck.initial:
-            build_initial(deck, model, targets.nodes, targets.cells_of)
+            build_initial(targets)
         if sum(step.perturbs for step in deck.steps) > 1:
             self._check_linear()
         for draft in deck.steps:

@@ -20,10 +20,8 @@ from corota.model.contact import gap_element
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from corota.arrays import Bools, Ints
+    from corota.io.deck.build.targets import Targets
     from corota.model.model import Model
-
-    Find = Callable[[Draft], str | Ints | None]
 
 connect = lazy("corota.io.deck.cards.connectors:connect")
 
@@ -211,15 +209,16 @@ def _assign(deck: Deck, card: Card, type_: str, value: tuple[float, ...]) -> lis
     return mine
 
 
-def build_attachments(deck: Deck, model: Model, find: Find, rotating: Bools) -> None:
+def build_attachments(targets: Targets) -> None:
     """Add the deck's point masses, dashpots, connectors and gaps to the model."""
+    deck, model = targets.deck, targets.model
     for read in deck.properties:
         read()
     number = -1
     for draft in deck.attached:
         if draft.type == "CONN2D2":
             number += len(draft.labels)
-            connect(deck, model, draft, find, rotating)
+            connect(targets, draft)
             continue
         if not draft.value:
             deck.error(
@@ -230,7 +229,7 @@ def build_attachments(deck: Deck, model: Model, find: Find, rotating: Bools) -> 
             continue
         for label, drafts in zip(draft.labels, draft.nodes, strict=True):
             number += 1
-            found = [find(d) for d in drafts]
+            found = [targets.nodes(d) for d in drafts]
             nodes = [int(n[0]) for n in found if n is not None and not isinstance(n, str)]
             if len(nodes) < len(drafts):
                 continue

@@ -34,13 +34,9 @@ from corota.model.contact import gap_element
 from corota.model.loads import Fixed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from corota.arrays import Bools, Ints
+    from corota.arrays import Ints
     from corota.errors import Location
-    from corota.model.model import Model
-
-    Find = Callable[[Draft], str | Ints | None]
+    from corota.io.deck.build.targets import Targets
 
 #: Components of the relative motion that a connection leaves free, of 1, 2 and 6. Others are
 #: joined, but those of LINK (the distance) and BEAM (all, at a distance).
@@ -420,33 +416,34 @@ def _pins(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> None:
         nodes.append(pin)
 
 
-def connect(deck: Deck, model: Model, draft: AttachedDraft, find: Find, rotating: Bools) -> None:
+def connect(targets: Targets, draft: AttachedDraft) -> None:
     """Add constraints and dashpots of the connectors of a set to the model."""
     section = draft.connector
     if section is None:
         text = f"no *CONNECTOR SECTION, ELSET={draft.name} says what these elements join"
-        deck.error(draft.card, draft.card.at("ELSET"), text)
+        targets.deck.error(draft.card, draft.card.at("ELSET"), text)
         return
     for place, drafts in enumerate(draft.nodes):
-        found = [find(d) for d in drafts]
+        found = [targets.nodes(d) for d in drafts]
         nodes = [int(n[0]) for n in found if n is not None and not isinstance(n, str)]
         if len(nodes) == len(drafts) and section.kinds:
-            one = _Connector(deck, model, section, drafts[0].row.where, nodes, rotating)
-            held = _held(deck, model, find)
+            one = _Connector(targets, section, drafts[0].row.where, nodes)
+            held = _held(targets)
             one.join(held)
             one.damp()
             one.stop(f"{draft.name}-{draft.labels[place]}" if draft.labels else "")
             for at, component, drive, control in draft.controls:
-                node = find(control) if at == place else None
+                node = targets.nodes(control) if at == place else None
                 if node is not None and not isinstance(node, str):
                     one.drive(component, drive, int(node[0]), held)
 
 
-def _held(deck: Deck, model: Model, find: Find) -> Ints:
+def _held(targets: Targets) -> Ints:
     """Nodes with supports."""
+    deck = targets.deck
     drafts = [*deck.supports, *(d for step in deck.steps for d in step.supports)]
-    found = (find(d) for d in drafts)
-    parts = [model.mesh.node_indices(n) for n in found if n is not None]
+    found = (targets.nodes(d) for d in drafts)
+    parts = [targets.mesh.node_indices(n) for n in found if n is not None]
     return np.unique(np.concatenate([np.zeros(0, np.int64), *parts]))
 
 
@@ -454,21 +451,15 @@ class _Connector:
     """One connector in the model: its nodes, the pin of a link behind them."""
 
     def __init__(
-        self,
-        deck: Deck,
-        model: Model,
-        section: ConnectorDraft,
-        where: Location,
-        nodes: list[int],
-        rotating: Bools,
+        self, targets: Targets, section: ConnectorDraft, where: Location, nodes: list[int]
     ) -> None:
-        self.deck, self.model, self.section, self.where = deck, model, section, where
-        self.nodes, self.rotating = nodes, rotating
+        self.deck, self.model, self.rotating = targets.deck, targets.model, targets.rotating
+        self.section, self.where, self.nodes = section, where, nodes
         self.kind = section.kinds[0]
-        points = model.mesh.points[nodes]
+        points = self.model.mesh.points[nodes]
         self.line = points[1] - points[0] if len(nodes) > 1 else np.zeros(2)
         self.apart = float(np.hypot(*self.line)) > CLOSE * float(
-            np.ptp(model.mesh.points, axis=0).max()
+            np.ptp(self.model.mesh.points, axis=0).max()
         )
 
     def error(self, text: str, hint: str = "") -> None:

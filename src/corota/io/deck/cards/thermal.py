@@ -13,13 +13,10 @@ from corota.model.loads import InitialStress, InitialTemperature, Temperature
 from corota.model.materials import Expansion
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from corota.arrays import Ints
-    from corota.io.deck.build.sets import Elements
+    from corota.io.deck.build.targets import Targets
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card, Row
-    from corota.model.model import Model
 
 #: Coefficients by ``TYPE=``.
 _TYPES = {"ISO": 1, "ORTHO": 3}
@@ -127,24 +124,20 @@ def initial_stress(deck: Deck, card: Card) -> None:
         deck.initial.append(InitialDraft(draft, point))
 
 
-def build_initial(
-    deck: Deck,
-    model: Model,
-    find: Callable[[Draft], str | Ints | None],
-    cells: Callable[[Draft], Elements | None],
-) -> None:
+def build_initial(targets: Targets) -> None:
     """Add initial temperatures and stresses to the model."""
+    deck, model = targets.deck, targets.model
     points: dict[tuple[int, ...], tuple[float, ...]] = {}
     for item in deck.initial:
         draft = item.draft
         if draft.kind == "initial temperature":
-            nodes = find(draft)
+            nodes = targets.nodes(draft)
             if nodes is not None:
                 model.initial_temperatures.append(
                     InitialTemperature(nodes, draft.value[0], draft.row.where)
                 )
             continue
-        found = cells(draft)
+        found = targets.cells_of(draft)
         if found is None:
             continue
         if item.point:
