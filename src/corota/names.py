@@ -74,3 +74,10 @@ def choose(value: object, known: Iterable[str], what: str, where: Location | Non
         hint = did_you_mean(value, names) if isinstance(value, str) else ""
         raise InputError(f"no {what} {value!r}; there are {', '.join(names)}{hint}", where)
     return found
+
+
+def choose_attribute(
+    item: object, name: str, known: Iterable[str], what: str, where: Location | None = None
+) -> None:
+    """Replace an attribute by the known name that it matches; see :func:`choose`."""
+    setattr(item, name, choose(getattr(item, name), known, what, where))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from corota.errors import FileError, InputError, number
 from corota.model.single_point import SinglePoint
-from corota.names import choose
+from corota.names import choose_attribute
 
 if TYPE_CHECKING:
     import os
@@ -168,7 +168,7 @@ class Umat(_Compiled):
     flows = True
 
     def __post_init__(self) -> None:
-        choose(self.terms, ("strain", "gradient"), "terms", self.where)
+        choose_attribute(self, "terms", ("strain", "gradient"), "terms", self.where)
         if not -1.0 < number(self.thickness_ratio, "thickness_ratio") <= 0.5:
             raise InputError(
                 f"thickness_ratio must be above -1 and at most 0.5, not {self.thickness_ratio:g}",

@@ -14,7 +14,7 @@ from corota.errors import InputError, Location, number
 from corota.mesh import selection
 from corota.mesh.parts import cells_of, nodes_of_cells
 from corota.model.dofs import dof_index
-from corota.names import choose
+from corota.names import choose_attribute
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -432,7 +432,7 @@ class EdgeLoad(Brief):
             self.opposite = selected(self.opposite, "edge", self.where)
         if self.start is not None:
             self.start = selected(self.start, "node", self.where)
-        choose(self.kind, EDGE_LOADS, "load on edges", self.where)
+        choose_attribute(self, "kind", EDGE_LOADS, "load on edges", self.where)
         what = "a pressure" if self.kind.endswith("pressure") else "a traction"
         self.value = tuple(number(v, what, self.where) for v in self.value)
         if self.kind == "hydrostatic pressure" and self.value[1] == self.value[2]:
@@ -487,7 +487,7 @@ class BodyForce(Brief):
     def __post_init__(self) -> None:
         if self.masses is None or len(self.cells):
             self.cells = selected(self.cells, "cell", self.where)
-        choose(self.kind, BODY_FORCES, "load on cells", self.where)
+        choose_attribute(self, "kind", BODY_FORCES, "load on cells", self.where)
         self.value = tuple(number(v, self.kind, self.where) for v in self.value)
         self.amplitude = _amplitude(self.amplitude, self.where)
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from corota.display import Brief
 from corota.errors import InputError, number
-from corota.names import choose
+from corota.names import choose_attribute
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -201,7 +201,7 @@ class Norton(Brief):
         _above(self.A, "the factor A of creep")
         _above(self.n, "the exponent n of creep")
         _above(self.m, "the exponent m of the time", -1.0)
-        choose(self.hardening, HARDENINGS, "hardening of creep")
+        choose_attribute(self, "hardening", HARDENINGS, "hardening of creep")
 
     def numbers(self) -> list[float]:
         """Numbers for the core."""

@@ -20,7 +20,7 @@ from corota.model.loading import Loading
 from corota.model.loads import LOAD_KINDS, Fixed, check_loads, check_supports, selected
 from corota.model.paths import ArcLength, DisplacementControl
 from corota.model.settings import Settings
-from corota.names import choose
+from corota.names import choose, choose_attribute
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -319,7 +319,7 @@ class Step(Brief, Loading, Settings):
         >>> step.loads[0].value, step.ended
         ((0.0,), {'force'})
         """
-        choose(kind, REMOVED, "kind of load", self.where)
+        kind = choose(kind, REMOVED, "kind of load", self.where)
         if at is None and kind in ("all", *LOAD_KINDS):
             self.ended |= set(LOAD_KINDS) if kind == "all" else {kind}  # type: ignore[arg-type]
         elif kind == "gravity":
@@ -409,7 +409,7 @@ class Static(Step):
                 f"at_limit must be 'stop' or 'follow', not {self.at_limit!r}", self.where
             )
         self._control_numbers()
-        choose(self.at_bifurcation, AT_BIFURCATION, "at_bifurcation", self.where)
+        choose_attribute(self, "at_bifurcation", AT_BIFURCATION, "at_bifurcation", self.where)
         if self.path is not None:
             if not isinstance(self.path, (ArcLength, DisplacementControl)):
                 raise InputError(
@@ -526,7 +526,7 @@ class Dynamic(Step):
         from corota.model.schemes import names
 
         self.scheme = choose(self.scheme, names(), "scheme", self.where)
-        choose(self.mass, MASSES, "kind of mass", self.where)
+        choose_attribute(self, "mass", MASSES, "kind of mass", self.where)
         if min(self.rayleigh) < 0.0:
             raise InputError(f"damping must be >= 0, not {self.rayleigh}", self.where)
 
@@ -592,7 +592,7 @@ class Frequency(Step):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        choose(self.mass, MASSES, "kind of mass", self.where)
+        choose_attribute(self, "mass", MASSES, "kind of mass", self.where)
         if not 0.0 <= self.lowest < self.highest:
             text = f"a range of frequencies must rise from 0, not {self.lowest} to {self.highest}"
             raise InputError(text, self.where)
@@ -684,7 +684,7 @@ class SteadyState(Step):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        choose(self.mass, MASSES, "kind of mass", self.where)
+        choose_attribute(self, "mass", MASSES, "kind of mass", self.where)
         check_supports(self.imaginary_supports, self.where)
         check_loads(self.imaginary_loads, self.where)
         if not 0.0 <= self.lowest < self.highest:

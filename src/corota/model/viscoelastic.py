@@ -12,7 +12,7 @@ from corota.display import Brief
 from corota.errors import InputError, number
 from corota.model.materials import Elastic, Material, isotropic_compliance
 from corota.model.single_point import SinglePoint
-from corota.names import choose
+from corota.names import choose_attribute
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -114,7 +114,7 @@ class Viscoelastic(SinglePoint):
     depends_on_time = True
 
     def __post_init__(self) -> None:
-        choose(self.moduli, MODULI, "moduli", self.where)
+        choose_attribute(self, "moduli", MODULI, "moduli", self.where)
         if not isinstance(self.parent, Elastic) and self.parent.law not in PARENTS:
             raise InputError(
                 f"Elastic and hyperelastic materials relax, {type(self.parent).__name__} does not",

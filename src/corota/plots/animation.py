@@ -129,12 +129,12 @@ def animate(
         If writing fails.
     """
     target = picture_path(path, tuple(FORMATS))
-    choose(spacing, ("time", "increments"), "spacing")
+    way = choose(spacing, ("time", "increments"), "spacing")
     if target.suffix.lower() == ".mp4":
         require_ffmpeg()
     name = vf.match_name(name, results.variables())
     drawing = Drawing(results, name, per_cell)
-    chosen = moments(results.times, MOST_FRAMES, spacing)
+    chosen = moments(results.times, MOST_FRAMES, way)
     shown = np.unique(chosen).tolist()
     ranges = [drawing.range(i) for i in shown]
     limits = (min(r[0] for r in ranges), max(r[1] for r in ranges))

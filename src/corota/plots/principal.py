@@ -143,7 +143,7 @@ def flow(
     InputError
         If there is no stress of planar elements.
     """
-    choose(kind, KINDS, "kind of flow")
+    kind = choose(kind, KINDS, "kind of flow")
     positions = results.mesh.points + scale * results.frame(frame).U
     area = float(_planar(results, positions, frame)[1].sum())
     field = _Field(results, positions, frame, _apart(results, positions, area, *LINES))

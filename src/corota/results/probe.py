@@ -238,7 +238,7 @@ def line(
 ) -> Line:
     """Find a line; see :meth:`corota.results.Results.along`."""
     mesh = results.mesh
-    choose(spread, ("even", "given"), "spread of points")
+    spread = choose(spread, ("even", "given"), "spread of points")
     if isinstance(path, str):
         name = mesh.set_name(path)
         if name in mesh.edge_sets:

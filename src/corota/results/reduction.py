@@ -58,7 +58,7 @@ def history(
     name = "load factor" if name == "factor" else name
     if scalar := _scalar(results, name, at):
         return History(scalar, results.scalar_values(scalar), results)
-    choose(combine, REDUCERS, "way to combine")
+    combine = choose(combine, REDUCERS, "way to combine")
     name = variable_name(results, name)
     where = "" if at is None else f" at {_place(at)}"
     if name in NODAL or not _at_points(results, at):

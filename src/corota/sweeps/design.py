@@ -57,7 +57,7 @@ def sample(
     >>> len(rows), all(0.2 <= row["thickness"] <= 0.6 for row in rows)
     (4, True)
     """
-    choose(engine, tuple(ENGINES), "engine of a sample")
+    engine = choose(engine, tuple(ENGINES), "engine of a sample")
     if n < 1 or not ranges:
         raise InputError("a sample needs at least one point and one parameter with its bounds")
     for name, bounds in ranges.items():

@@ -58,7 +58,7 @@ class Sweep:
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         """Column of a parameter or measure; ``seconds`` and ``error`` are columns, too."""
-        choose(name, tuple(self._columns), "column of the sweep")
+        name = choose(name, tuple(self._columns), "column of the sweep")
         return np.array(self._columns[name])
 
     def __repr__(self) -> str:
