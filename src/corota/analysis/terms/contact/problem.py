@@ -320,8 +320,7 @@ class ContactProblem:
                 p1 = p + found[1][pair.first : pair.first + pair.n, 0]
                 q1 = q + found[1][pair.first + pair.n : pair.first + pair.width, 0]
                 own = slice(pair.first + pair.n, pair.first + pair.width)
-                left = self.border.left[own]
-                left = left + np.where(pair.weightless(q), self.border.left_by_others[own], 0.0)
+                left = self.border.left[own] + self.border.left_by_others[own]
                 bound = pair.bound(np.maximum(p1, p))
                 moved = (s == CLOSED) & (np.abs(left) > pair.noise) & np.isfinite(bound)
                 q1[moved] = -left[moved]
