@@ -483,14 +483,18 @@ def test_shrink_fit_with_heat_and_spin(element: str, slave: str, start: Any) -> 
     pressures = [x / c for x in parts]
     assert pressures[0] > pressures[1] > pressures[2] > 0.05 * pressures[0]
     nodes = mesh.nodes_of(edge)
+    # A third of an edge at corners, two thirds at mid-side nodes, which are half as far apart.
+    order = np.argsort(np.arctan2(*mesh.points[nodes].T))
+    area = np.empty(len(nodes))
+    area[order] = np.where(np.arange(len(nodes)) % 2, 2.0, 1.0)
+    area[order[[0, -1]]] = 0.5
     out = int(np.argmin(np.hypot(mesh.points[:, 0] - d, mesh.points[:, 1])))
     first = results.frames[1].C[nodes, 0]
     share = 0.25 if start == "ramp" else 1.0
     assert first[first != 0.0].mean() == pytest.approx(share * pressures[0], rel=0.01)
     for k, (frame, p) in enumerate(zip(got, pressures, strict=True)):
         got_p = frame.C[nodes, 0]
-        corners = got_p[got_p != 0.0]
-        assert corners.mean() == pytest.approx(p, rel=0.01, abs=0.006 * pressures[0])
+        assert (got_p @ area) / area.sum() == pytest.approx(p, rel=0.01, abs=0.006 * pressures[0])
         u = lame(b, d, Eo, d, p, 0.0)
         u += alpha * T * d if k > 0 else 0.0
         u += spun(b, d, Eo, d) if k > 1 else 0.0

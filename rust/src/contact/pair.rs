@@ -44,7 +44,7 @@ impl Contact {
         {
             bulge(faces, x);
         }
-        let slave = Slave::new(x, edges, thickness, entry.middles);
+        let slave = Slave::new(x, edges, thickness);
         Self::with(x, slave, master, entry, distances, corners)
     }
 

@@ -47,18 +47,13 @@ pub struct Slave {
 }
 
 impl Slave {
-    /// Constraints at the corners, or at all nodes if `middles`.
-    pub fn new(
-        reference: &[[f64; 3]],
-        edges: Vec<Edge>,
-        thickness: Vec<Depth>,
-        middles: bool,
-    ) -> Self {
+    /// Constraints at all nodes.
+    pub fn new(reference: &[[f64; 3]], edges: Vec<Edge>, thickness: Vec<Depth>) -> Self {
         let (mut nodes, mut area, mut size) = (Vec::new(), Vec::new(), Vec::new());
         let mut number = HashMap::new();
         let mut constraints = Vec::with_capacity(edges.len());
         for (edge, thickness) in edges.iter().zip(&thickness) {
-            let n = if middles { edge.n_nodes } else { 2 };
+            let n = edge.n_nodes;
             let curve = edge.place(reference);
             let mut mine = [usize::MAX; 3];
             for a in 0..n {

@@ -63,7 +63,7 @@ fn line_contact(
     let slave = if own.is_empty() {
         Slave::of_nodes(points)
     } else {
-        Slave::new(x, own.clone(), depths(&thickness)?, true)
+        Slave::new(x, own.clone(), depths(&thickness)?)
     };
     let first = match &rigid {
         Some((segments, node, point, turns)) => {

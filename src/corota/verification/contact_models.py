@@ -56,11 +56,14 @@ def quarter(radius: float, n: int, element: str, growth: float = 1.5, upper: boo
             flat,
             lambda t: (0.0, radius * (t**power - 1.0)),
         ]
-    return _middles(meshes.mapped(sides, n, n, cell(element)), radius)
+    return with_middles(meshes.mapped(sides, n, n, cell(element)), radius)
 
 
-def _middles(mesh: Mesh, radius: float) -> Mesh:
-    """The mesh with the outer side nodes in the middle of their sides, which grow with a power."""
+def with_middles(mesh: Mesh, radius: float) -> Mesh:
+    """The mesh with the outer side nodes in the middle of their sides, which grow with a power.
+
+    Those on the axes and on the circle of a radius about the origin.
+    """
     for block in mesh.cells:
         for local in EDGES[block.kind]:
             if len(local) < 3:

@@ -32,7 +32,6 @@ use std::f64::consts::{PI, TAU};
 pub const ENTRY: Entry = Entry {
     name: "line",
     joins: false,
-    middles: true,
     integrates: false,
     new: |sides, x| Box::new(Lines::new(sides, x)),
 };

@@ -24,8 +24,6 @@ pub struct Entry {
     pub name: &'static str,
     /// Joins the surfaces for good, on the pairing of the reference configuration.
     pub joins: bool,
-    /// Constraints are at all nodes of the slave, middle nodes of edges included; else at corners.
-    pub middles: bool,
     /// Gaps are integrals over slave edges: where the master ends, an edge is covered in part.
     pub integrates: bool,
     pub new: fn(&Sides, &[[f64; 3]]) -> Box<dyn Discretization>,

@@ -1,27 +1,26 @@
 //! Mortar integrals of gap and slip over the covered part of a slave edge.
 //!
 //! From each slave point a ray along the slave normal meets the master at distance g. Weighted with
-//! functions phi of the slave corners and integrated with the reference area, G = int phi g dA; the
+//! functions phi of the slave nodes and integrated with the reference area, G = int phi g dA; the
 //! limits are the feet of the master's ends on the slave edge and are differentiated with everything
 //! else. Slips are weighted in the same way; their tractions act along the relative tangential
 //! velocity, with weights and limits held.
 //!
-//! The functions are those of the shape, (1 -+ xi) / 2. With them a convex polygon would sink by
-//! h^2 / 6 R, since the mean gap of its facets counts, and a block would tip when the
-//! resultant is h / 3 inside its edge. Edges that are round in the undeformed slave, those at
-//! its ends, and all against a curved master have (1 -+ 3 xi) / 2, biorthogonal to the linear shape
-//! functions (Wohlmuth 2000): a gap that is linear on the edge has G = A g at each node. The height
-//! of a curved master over the chord of a linear edge is for this taken out of the gap. Quadratic edges have (1 -+ 2 xi) / 2, which
-//! give the value of a parabola at its vertex. The sum is one, so that a uniform pressure passes the
-//! patch test. Where the master ends within such an edge, xi runs over the covered part, as if the edge
-//! ended there: else the area of a node would be negative. It ends at sharp corners of the master, too: of
-//! the gap beside a corner, which opens to both sides, the functions would see a negative value at a node
-//! that is apart. Fillets smaller than two edges are such corners, under which weights are those of the shape. An end that a support guides is none: there
-//! functions are those inside the surface, of a rough surface the shape functions.
+//! The functions sum to one, so that a uniform pressure passes the patch test. docs/theory.md says
+//! which are where. Those that are biorthogonal to the shape functions give G = A g at each node of a
+//! gap of their order. A linear edge has them only if it is round, at an end of the slave or against a
+//! curved master, whose height over its chord is taken out of the gap; all quadratic edges have them.
+//! Elsewhere functions are positive.
+//!
+//! Where the master ends within an edge with biorthogonal functions, xi runs over the covered part, as
+//! if the edge ended there: else the area of a node would be negative. It ends at sharp corners of the
+//! master, too: of the gap beside a corner, which opens to both sides, the functions would see a
+//! negative value at a node that is apart. Fillets smaller than two edges are such corners, under which
+//! functions are positive. An end that a support guides is none.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::super::corners::{STEEP, at_corners, open_ends, round};
-use super::super::curve::{Curve, Edge, GAUSS, dot, lift, middle_of, outward, times, unit};
+use super::super::curve::{Curve, GAUSS, dot, lift, middle_of, outward, times, unit};
 use super::super::master::{Master, Surface};
 use super::super::search::each;
 use super::super::sides::Sides;
@@ -35,7 +34,6 @@ use crate::base::{Dual, Hyper, Smooth};
 pub const ENTRY: Entry = Entry {
     name: "mortar",
     joins: false,
-    middles: false,
     integrates: true,
     new: |sides, x| Box::new(Mortar::new(sides, x)),
 };
@@ -178,6 +176,29 @@ enum Run<const D: usize> {
     Between([Hyper<D>; 2]),
 }
 
+/// Functions of the nodes of an edge: coefficients of the powers of the place from -1 to 1.
+type Functions = [[f64; 3]; 3];
+
+/// Positive functions with the integrals of the shape functions, on a linear edge these.
+fn positive(n: usize) -> Functions {
+    if n == 2 {
+        [[0.5, -0.5, 0.0], [0.5, 0.5, 0.0], [0.0; 3]]
+    } else {
+        // (1 / sqrt 3 -+ xi)^2 / 4 of the corners.
+        let (value, slope) = (1.0 / 12.0, 0.5 / 3f64.sqrt());
+        [[value, -slope, 0.25], [value, slope, 0.25], [1.0 - 2.0 * value, 0.0, -0.5]]
+    }
+}
+
+/// Functions that are biorthogonal to the shape functions of an edge of uniform area.
+fn biorthogonal(n: usize) -> Functions {
+    if n == 2 {
+        [[0.5, -1.5, 0.0], [0.5, 1.5, 0.0], [0.0; 3]]
+    } else {
+        [[-0.25, -0.5, 1.25], [-0.25, 0.5, 1.25], [1.5, 0.0, -2.5]]
+    }
+}
+
 /// A slave edge and a master that it sees.
 struct Facing<'a, const D: usize> {
     slave: Curve<Hyper<D>>,
@@ -188,21 +209,21 @@ struct Facing<'a, const D: usize> {
     /// The undeformed slave edge, and its thickness.
     reference: &'a Curve<f64>,
     thickness: Depth,
-    /// Slope of the functions of the corners, times two.
-    slope: f64,
-    /// Clearance taken off the gap at the corners of the edge.
-    offset: [f64; 2],
+    /// Coefficients of the functions of its nodes.
+    functions: &'a [[f64; 3]],
+    /// Clearance taken off the gap at the nodes of the edge.
+    offset: [f64; 3],
     /// Height of the master over the chord of the edge.
     height: f64,
 }
 
-/// Integrals for the two corners of a slave edge.
+/// Integrals for the nodes of a slave edge.
 struct Integrals<const D: usize> {
-    gap: [Hyper<D>; 2],
-    slip: [f64; 2],
+    gap: [Hyper<D>; 3],
+    slip: [f64; 3],
     /// Along which the shear tractions act.
-    direction: [[Dual<D>; D]; 2],
-    area: [f64; 2],
+    direction: [[Dual<D>; D]; 3],
+    area: [f64; 3],
 }
 
 /// Gaps, slips and areas of an overlap.
@@ -211,7 +232,7 @@ fn integrals<const D: usize>(
     now: &Facing<'_, D>,
     start: Option<&Start>,
 ) -> Integrals<D> {
-    let Facing { slave, master, members, run, reference, thickness, slope, .. } = now;
+    let Facing { slave, master, members, run, reference, thickness, functions, .. } = now;
     let limits = overlap.limits.map(|limit| match limit {
         Limit::Fixed(r) => Hyper::real(r),
         Limit::Foot(end) => slave.foot(master.end(end)),
@@ -219,14 +240,13 @@ fn integrals<const D: usize>(
     let centered = |[low, high]: [Hyper<D>; 2]| ((high + low).scale(0.5), (high - low).scale(0.5));
     let (middle, half) = centered(limits);
     let between = if let Run::Between(ends) = run { Some(centered(*ends)) } else { None };
-    // Integrals with 1 and the place in the part that the functions run over, from -1 to 1.
-    let mut gap = [Hyper::real(0.0); 2];
-    let [mut area, mut slip] = [[0.0; 2]; 2];
-    let mut along = [[Dual::real(0.0); D]; 2];
+    // Integrals with powers of the place in the part that the functions run over, from -1 to 1.
+    let n = functions.len();
+    let [mut gap, mut area] = [[Hyper::real(0.0); 3]; 2];
+    let mut slip = [0.0; 3];
+    let mut along = [[Dual::real(0.0); D]; 3];
+    let clear = now.offset.iter().all(|o| *o == 0.0);
     let straight = slave.straight.then(|| (slave.d, unit(outward(slave.d))));
-    // Weighted, these give the clearance of each corner times its area.
-    let [a, b] = now.offset;
-    let shift = [0.5 * (a + b), 1.5 / slope * (b - a)];
     for (r, w) in GAUSS {
         let xi = middle + half.scale(r);
         let place = match (&between, run) {
@@ -234,51 +254,68 @@ fn integrals<const D: usize>(
             (None, Run::Overlap) => Hyper::real(r),
             (None, _) => xi,
         };
-        let (t, n) = straight.unwrap_or_else(|| {
+        let (t, normal) = straight.unwrap_or_else(|| {
             let t = slave.slope(xi);
             (t, unit(outward(t)))
         });
-        let hit = master.ray(slave.at(xi), t, n);
+        let hit = master.ray(slave.at(xi), t, normal);
         let da =
             thickness.area(half * length(reference, xi).scale(w), || lift(reference).at(xi)[0]);
-        area[0] += da.v;
-        area[1] += da.v * place.v;
-        let mut gap_there = hit.gap - place.scale(shift[1]) - Hyper::real(shift[0]);
+        let mut gap_there = hit.gap;
         if now.height != 0.0 {
             gap_there += (Hyper::real(1.0) - xi * xi).scale(now.height);
         }
-        let part = da * gap_there;
-        gap[0] += part;
-        gap[1] += part * place;
+        let (mut part, mut da_part) = (da * gap_there, da);
+        for m in 0..n {
+            if m > 0 {
+                part = part * place;
+                if clear { da_part.v *= place.v } else { da_part = da_part * place }
+            }
+            gap[m] += part;
+            if clear { area[m].v += da_part.v } else { area[m] += da_part }
+        }
         let Some(start) = start else { continue };
-        let (da, at) = (first(&da), first(&xi));
-        let apart = times(firsts(&n), first(&hit.gap));
+        let (da, at, to) = (first(&da), first(&xi), first(&place));
+        let apart = times(firsts(&normal), first(&hit.gap));
         let points = (Point::Curve(slave, at), Point::of(master, &hit));
         let rate = direction(&points.0, &points.1, Along::Slave, apart);
         for (v, rate) in rate.into_iter().enumerate() {
-            let part = da * rate;
-            along[0][v] += part;
-            along[1][v] += part * first(&place);
+            let mut part = da * rate;
+            for along in &mut along[..n] {
+                along[v] += part;
+                part = part * to;
+            }
         }
-        let (r, normal) = (hit.r.v, master.normal_at(hit.r.v));
-        let path = start.slip((members[0], xi.v), (members[1], r), normal, None);
+        let (r, across) = (hit.r.v, master.normal_at(hit.r.v));
+        let path = start.slip((members[0], xi.v), (members[1], r), across, None);
         // Along the slave, and as long as it is now.
-        let facing = -(normal[0] * n[0].v + normal[1] * n[1].v);
+        let facing = -(across[0] * normal[0].v + across[1] * normal[1].v);
         let stretch = start.stretch(true, members[1], r, master.speed_at(r)) * facing;
         let part = da.v * stretch * path;
-        slip[0] += part;
-        slip[1] += part * place.v;
+        for (m, slip) in slip[..n].iter_mut().enumerate() {
+            *slip += part * place.v.powi(m as i32);
+        }
     }
-    let corners = |[a, b]: [f64; 2]| [0.5 * (a - slope * b), 0.5 * (a + slope * b)];
-    let sum = |slope: f64| (gap[0] + gap[1].scale(slope)).scale(0.5);
-    let [a, b] = along;
-    let side = |slope: f64| std::array::from_fn(|v| (a[v] + b[v].scale(slope)).scale(0.5));
-    Integrals {
-        gap: [sum(-slope), sum(*slope)],
-        slip: corners(slip),
-        direction: [side(-slope), side(*slope)],
-        area: corners(area),
+    let mut sums = Integrals {
+        gap: [Hyper::real(0.0); 3],
+        slip: [0.0; 3],
+        direction: [[Dual::real(0.0); D]; 3],
+        area: [0.0; 3],
+    };
+    for (a, coefficients) in functions.iter().enumerate() {
+        for (m, &c) in coefficients[..n].iter().enumerate() {
+            sums.gap[a] += gap[m].scale(c);
+            if !clear {
+                sums.gap[a] += area[m].scale(-c * now.offset[a]);
+            }
+            sums.slip[a] += c * slip[m];
+            sums.area[a] += c * area[m].v;
+            for (sum, along) in sums.direction[a].iter_mut().zip(&along[m]) {
+                *sum += along.scale(c);
+            }
+        }
     }
+    sums
 }
 
 /// Length of a curve for a unit of the parameter.
@@ -291,14 +328,14 @@ fn length<T: Smooth>(c: &Curve<f64>, r: T) -> T {
     dot(t, t).sqrt()
 }
 
-/// Weighted gaps and slips at the corners of slave edges.
+/// Weighted gaps and slips at the nodes of slave edges.
 pub struct Mortar {
-    /// Slope of the functions of each edge, times two.
-    slope: Vec<f64>,
-    /// That where no end of the slave is, and that where none of its ends is guided by a support:
+    /// Whether the functions of each edge are the biorthogonal ones.
+    dual: Vec<bool>,
+    /// Those where no end of the slave is, and those where none of its ends is guided by a support:
     /// about one that is guided nothing tips.
-    inner: Vec<f64>,
-    free: Vec<f64>,
+    inner: Vec<bool>,
+    free: Vec<bool>,
     /// Curvature of each master in the reference configuration.
     curvature: Vec<f64>,
     /// Which masters are pieces of a fillet, and which of their ends are corners.
@@ -312,8 +349,8 @@ impl Discretization for Mortar {
             let guided = sides.slave.constraints[i][..2].iter().any(|&c| held[c]);
             // With the slip of the end node alone a traction along the support would not move the
             // slave, so that it could take any size.
-            let inside = if rough { 1.0 } else { self.inner[i] };
-            self.slope[i] = if guided { inside } else { free };
+            let inside = !rough && self.inner[i];
+            self.dual[i] = if guided { inside } else { free };
         }
     }
 
@@ -331,7 +368,9 @@ impl Discretization for Mortar {
             let mut overlaps = overlaps(sides, i, x);
             clip_occluded(&mut overlaps);
             let slave = Master::Curve(sides.slave.edges[i].place(x));
-            let closed = sides.slave.constraints[i][..2].iter().any(|&k| closed(k));
+            let closed = sides.slave.constraints[i][..sides.slave.edges[i].n_nodes]
+                .iter()
+                .any(|&k| closed(k));
             let station = move |o: Overlap| {
                 let j = sides.candidates()[o.pair].1;
                 let master = sides.master.place(j, x);
@@ -369,37 +408,31 @@ impl Mortar {
         };
         let curvature: Vec<f64> = (0..sides.master.len()).map(curvature).collect();
         let curved = curvature.iter().any(|k| *k != 0.0);
-        let slope = |(i, edge): (usize, &Edge), end: bool| {
-            // Around an axis nothing tips, and with a slope of 3 a node on it would have no area.
-            if sides.itself || !matches!(sides.slave.thickness[i], Depth::Thickness(_)) {
-                return 1.0;
-            }
-            match (end, round[i] || curved, edge.n_nodes) {
-                (true, _, _) | (_, true, 2) => 3.0,
-                (_, true, _) => 2.0,
-                _ => 1.0,
-            }
+        let dual = |i: usize, end: bool| {
+            // Around an axis nothing tips, and the corner of a linear edge on it would have no area.
+            let plane = matches!(sides.slave.thickness[i], Depth::Thickness(_));
+            let linear = sides.slave.edges[i].n_nodes == 2;
+            !sides.itself && (!linear || plane && (end || curved || round[i]))
         };
-        let edges = || sides.slave.edges.iter().enumerate();
-        let inner = edges().map(|e| slope(e, false)).collect();
-        let free: Vec<f64> = edges().map(|e| slope(e, ends[e.0].contains(&true))).collect();
+        let all = 0..sides.slave.edges.len();
+        let inner = all.clone().map(|i| dual(i, false)).collect();
+        let free: Vec<bool> = all.map(|i| dual(i, ends[i].contains(&true))).collect();
         let (fillet, corner) = at_corners(&sides.master, x, longest);
-        Self { slope: free.clone(), inner, free, curvature, fillet, corner }
+        Self { dual: free.clone(), inner, free, curvature, fillet, corner }
     }
 
     /// Height of a master over the chord of a slave edge, whose functions take a gap for linear.
     fn height(&self, sides: &Sides, i: usize, j: usize) -> f64 {
         let edge = &sides.slave.edges[i];
-        let linear = edge.n_nodes == 2 && self.slope[i] > 1.0;
+        let linear = edge.n_nodes == 2 && self.dual[i];
         if linear { 0.125 * self.curvature[j] * edge.length * edge.length } else { 0.0 }
     }
 
     fn edge(&self, sides: &Sides, i: usize, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
         let mut overlaps = overlaps(sides, i, x);
         clip_occluded(&mut overlaps);
-        let whole = self.slope[i] <= 1.0;
         let terms = |o: &Overlap| {
-            let part = if whole { None } else { self.part(sides, &overlaps, o) };
+            let part = if self.dual[i] { self.part(sides, &overlaps, o) } else { None };
             let covered = part.as_ref().filter(|c| !c.is_whole());
             let variables = distinct(&variables_of(sides, o, covered));
             match variables.0.len() {
@@ -463,10 +496,16 @@ impl Mortar {
             Some(covered) if covered.is(overlap) => Run::Overlap,
             Some(covered) => Run::Between([end(covered, 0), end(covered, 1)]),
         };
-        // A notch is closed at its tip anyway: the part there belongs to the other end.
+        // A notch is closed at its tip anyway: the part there belongs to the next node.
         let constraints = sides.slave.constraints[i];
         let tip = [0, 1].map(|a| sides.notches.contains(&edge.nodes[a]));
-        let owner = |a: usize| constraints[if tip[a] && !tip[1 - a] { 1 - a } else { a }];
+        let owner = |a: usize| match (edge.n_nodes, a) {
+            (3, 0 | 1) if tip[a] => constraints[2],
+            (2, _) if tip[a] && !tip[1 - a] => constraints[1 - a],
+            _ => constraints[a],
+        };
+        let dual = self.dual[i] && !self.fillet[j];
+        let functions = if dual { biorthogonal } else { positive }(edge.n_nodes);
         let facing = Facing {
             slave,
             master,
@@ -474,8 +513,8 @@ impl Mortar {
             run,
             reference: &sides.reference[i],
             thickness: sides.slave.thickness[i],
-            slope: if self.fillet[j] { 1.0 } else { self.slope[i] },
-            offset: [sides.offset[constraints[0]], sides.offset[constraints[1]]],
+            functions: &functions[..edge.n_nodes],
+            offset: constraints.map(|k| sides.offset.get(k).copied().unwrap_or(0.0)),
             height: self.height(sides, i, j),
         };
         let sums = integrals(overlap, &facing, start);
@@ -486,7 +525,7 @@ impl Mortar {
             slip: start.map_or_else(Function::none, |_| slip(a)),
             area: sums.area[a],
         };
-        Terms { pair: overlap.pair, variables, shares: vec![share(0), share(1)] }
+        Terms { pair: overlap.pair, variables, shares: (0..edge.n_nodes).map(share).collect() }
     }
 }
 

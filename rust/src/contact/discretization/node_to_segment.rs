@@ -25,7 +25,6 @@ use crate::base::{Dual, Hyper, Smooth};
 pub const ENTRY: Entry = Entry {
     name: "node_to_segment",
     joins: false,
-    middles: true,
     integrates: false,
     new: |sides, x| Box::new(NodeToSegment::new(sides, x)),
 };

@@ -18,7 +18,6 @@ use crate::base::Smooth;
 pub const ENTRY: Entry = Entry {
     name: "point_tie",
     joins: true,
-    middles: true,
     integrates: false,
     new: |sides, _| Box::new(PointTie { n: sides.slave.nodes.len(), joints: Vec::new() }),
 };

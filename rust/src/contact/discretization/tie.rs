@@ -18,7 +18,6 @@ use crate::base::Smooth;
 pub const ENTRY: Entry = Entry {
     name: "tie",
     joins: true,
-    middles: true,
     integrates: true,
     new: |_, _| Box::new(Tie { pieces: Vec::new() }),
 };

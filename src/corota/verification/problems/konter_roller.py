@@ -21,7 +21,7 @@ from corota.model.model import Model
 from corota.model.steps import Static
 from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
-from corota.verification.contact_models import ellipse_of
+from corota.verification.contact_models import ellipse_of, with_middles
 from corota.verification.models import cell, run
 
 R, H, E1, E2, NU, LOAD = 50.0, 100.0, 210e3, 70e3, 0.3, 35e3
@@ -67,7 +67,8 @@ def roller(
         n,
         kind,
     )
-    model = Model(meshes.assembly(disc=disc, block=block))
+    disc = meshes.move(with_middles(meshes.move(disc, (0.0, -R)), R), (0.0, R))
+    model = Model(meshes.assembly(disc=disc, block=with_middles(block, R)))
     for name, modulus in (("disc", E1), ("block", E2)):
         material = Elastic(E=modulus, nu=NU)
         model.section(name, element=element, material=material, plane=plane)

@@ -113,7 +113,7 @@ def pressures(
 
 
 def _spread(values: Floats, pair: Pair, rows: Floats, terms: Terms | None = None) -> None:
-    """Add a pair's rows to the nodes; mid-side nodes get the mean of their corners."""
+    """Add a pair's rows to the nodes."""
     n = len(values)
     own = np.zeros((n, 5))
     own[pair.nodes[: pair.of_nodes]] = rows[: pair.of_nodes]
@@ -126,14 +126,7 @@ def _spread(values: Floats, pair: Pair, rows: Floats, terms: Terms | None = None
     own[facets, 4] = np.maximum(own[facets, 4], more[:, 4])
     if terms is not None and len(pair.corners):
         _spread_corners(own, pair, rows, terms)
-    given = np.zeros(n, bool)
-    given[pair.nodes] = True
-    edges = pair.slave.nodes
-    middle = (edges[:, 2] >= 0) & ~given[np.maximum(edges[:, 2], 0)]
-    a, b, m = edges[middle].T
-    own[m] = 0.5 * (own[a] + own[b])
-    own[m, 4] = np.maximum(own[a, 4], own[b, 4])
-    nodes = distinct(np.concatenate([pair.nodes, m]))
+    nodes = distinct(pair.nodes)
     before = values[nodes, 4] > 0.0
     values[nodes, :2] += own[nodes, :2]
     values[nodes, 3] += own[nodes, 3]
@@ -164,9 +157,6 @@ def _spread_corners(own: Floats, pair: Pair, rows: Floats, terms: Terms) -> None
                 int(variables[2 * i]) // 3: float(np.hypot(*gradient[2 * i : 2 * i + 2]))
                 for i in range(width)
             }
-            if width == 3 and pair.place[nodes[2]] < 0:
-                half = 0.5 * shares.pop(int(nodes[2]))
-                shares = {n: share + half for n, share in shares.items()}
         whole = sum(shares.values())
         for n, share in shares.items():
             own[n, :2] += share / whole * rows[k, :2] * pair.full[k] / pair.full[pair.place[n]]

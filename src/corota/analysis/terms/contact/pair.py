@@ -144,9 +144,11 @@ class Pair:
         self.resting = self.held_ends  # those of these that nothing draws along the plane
         integrates = isinstance(item, ContactPair) and METHODS[item.method]["integrates"]
         if integrates and not self.slave.pointwise:
-            ends = self.place[self.slave.nodes[:, :2]]
+            edges, bent = self.slave.nodes, self.slave.nodes[:, 2] >= 0
+            parts = [edges[~bent, :2], edges[bent][:, [0, 2]], edges[bent][:, [2, 1]]]
+            begin, end = self.place[np.concatenate(parts)].T
             left, right = np.full(self.n, -1, np.int64), np.full(self.n, -1, np.int64)
-            right[ends[:, 0]], left[ends[:, 1]] = ends[:, 1], ends[:, 0]
+            right[begin], left[end] = end, begin
             self.beside = (left, right)
         self.slid = np.zeros(self.n)  # slip so far [length]
         self.friction_work = 0.0
@@ -272,7 +274,8 @@ class Pair:
 
         A fixed end gives its part to its neighbor. An end that is guided tips nothing: the core
         weighs gaps and slips there as inside the surface, or with the shape functions where it
-        keeps means.
+        keeps means. Of a rough surface, an end of a quadratic edge counts as fixed: a traction at
+        that node alone would move nothing.
 
         Parameters
         ----------
@@ -288,6 +291,10 @@ class Pair:
         count = np.round((constrained[self.nodes, :2] ** 2).sum(axis=1))
         self.held_ends = ends & (count == 2)
         self.guided_ends = ends & (count == 1)
+        if self.two:
+            middle = np.isin(np.where(right < 0, left, right), self.place[self.slave.nodes[:, 2]])
+            self.held_ends |= self.guided_ends & middle
+            self.guided_ends &= ~middle
         self.planes = []
         self.resting = np.zeros(self.n, bool)
         if self.two and not self.tied and not moves:
