@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.arrays import Floats, Ints, distinct
 from corota.errors import SingularError
+from corota.model import elements
 
 if TYPE_CHECKING:
     from corota.analysis.numbered_model import NumberedModel
@@ -21,6 +22,8 @@ SMALL = 1e-5
 RATIO = 1e9
 #: Largest number of bodies that are examined.
 MOST = 400
+#: Most motions that a message lists.
+LISTED = 3
 
 
 def name_motion(system: NumberedModel, error: SingularError, ratio: float) -> SingularError:
@@ -50,6 +53,12 @@ def name_motion(system: NumberedModel, error: SingularError, ratio: float) -> Si
         f"{system.describe(equation)} is unconstrained; add a support, or remove the "
         "mechanism that contains it"
     )
+    if modes is not None and _slack(system, modes):
+        text += (
+            ". Bars and springs without tension have no stiffness across: give trusses an initial "
+            "stress (springs: trusses with E A / l of their stiffness), however small, or let the "
+            "chain come to rest in a dynamic step with damping"
+        )
     if ratio > RATIO:
         text += (
             f". The stiffnesses of nodes differ by a factor of {ratio:.0e}: if it is supported "
@@ -97,11 +106,27 @@ def describe(system: NumberedModel, modes: Floats) -> str:
     same: dict[str, list[str]] = {}
     for label, motions in found.items():
         same.setdefault(_and(motions), []).append(label)
-    return "; ".join(
+    listed = [
         f"the part{'s' if len(labels) > 1 else ''} with element "
         f"{', '.join(labels[:3])}{', ...' if len(labels) > 3 else ''} can {how}"
         for how, labels in same.items()
-    )
+    ]
+    more = [f"{len(listed) - LISTED} more move"] if len(listed) > LISTED + 1 else []
+    return "; ".join(listed[:LISTED] + more if more else listed)
+
+
+def _slack(system: NumberedModel, modes: Floats) -> bool:
+    """Whether all that moves are joints between two bars or springs, as in a chain."""
+    size = np.abs(modes).max(axis=0)
+    moving = (system.by_node(size) > SMALL * size.max()).any(axis=1)
+    bars, others = np.zeros(len(moving), np.int64), np.zeros(len(moving), bool)
+    for block in system.blocks:
+        element = elements.find(block.section.element)
+        if (element.line or element.spring) and element.dofs_per_node == 2:
+            np.add.at(bars, block.nodes.ravel(), 1)
+        else:
+            others[block.nodes] = True
+    return bool((bars[moving] == 2).all() and not others[moving].any())
 
 
 def _and(words: list[str]) -> str:
