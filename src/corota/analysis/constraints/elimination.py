@@ -263,6 +263,27 @@ class Constraints:
         """Inverse of :meth:`to_global`."""
         return self._turned(u, "nji,nj->ni")
 
+    def entries_to_axes(
+        self, rows: Ints, columns: Ints, values: Floats
+    ) -> tuple[Ints, Ints, Floats]:
+        """Entries of rows by dofs in global axes, as those by dofs along the nodes' axes."""
+        mine = np.isin(columns, self.turned)
+        if not mine.any():
+            return rows, columns, values
+        node = np.searchsorted(self._first, columns[mine], side="right") - 1
+        first = self._first[node]
+        parts = values[mine, None] * self._q[node, columns[mine] - first]
+        key = (rows[mine] * self.n + first)[:, None] + np.arange(2)
+        key, place = np.unique(key.ravel(), return_inverse=True)
+        total = np.bincount(place, parts.ravel())
+        # What is across an axis but for rounding.
+        kept = np.abs(total) > 1e-12 * np.bincount(place, np.abs(parts).ravel())
+        return (
+            np.concatenate([rows[~mine], key[kept] // self.n]),
+            np.concatenate([columns[~mine], key[kept] % self.n]),
+            np.concatenate([values[~mine], total[kept]]),
+        )
+
     def _turned(self, u: Floats, rule: str) -> Floats:
         if not len(self._first):
             return u

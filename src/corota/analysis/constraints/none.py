@@ -96,6 +96,11 @@ class NoConstraints(Constraints):
     def to_axes(self, u: Floats) -> Floats:
         return u
 
+    def entries_to_axes(
+        self, rows: Ints, columns: Ints, values: Floats
+    ) -> tuple[Ints, Ints, Floats]:
+        return rows, columns, values
+
     def complete(self, u: Floats) -> None:
         pass
 

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 #: Unbalanced force relative to the largest that ends the iteration, and that may remain.
 BALANCED, ROUNDED = 1e-11, 1e-7
+#: Rounding of the force that changes a velocity, relative to the one that would stop it.
+EPSILON = 4.0 * np.finfo(float).eps
 #: Corrections of an increment.
 CORRECTIONS = 30
 
@@ -191,8 +193,11 @@ class ReducedMass(FreeMass):
             inertia = mass * a
             rest = np.where(self.moving, link.gather(residual + inertia), 0.0)
             size = max(float(np.abs(residual).max()), float(np.abs(inertia).max()))
+            # Of a motion without forces nothing is left but the rounding of its positions.
+            digits = float((mass * (np.abs(at) / dt + np.abs(v))).max()) / h
             left = float(np.abs(rest).max())
-            if left <= BALANCED * size or (left >= best and left <= ROUNDED * size):
+            exact = max(BALANCED * size, EPSILON * digits)
+            if left <= exact or (left >= best and left <= ROUNDED * size):
                 return a
             if not left < np.inf:
                 break

@@ -153,9 +153,10 @@ class ForwardContact:
             problem = _Increment(self, found, ahead, before, share, inverse, time)
             multipliers = problem.solve()
             force, size = self._forces(found, multipliers)
-            self._count(found, multipliers, force, moved, ahead + problem.pushed)
+            along = system.at_nodes(force)
+            self._count(found, multipliers, along, moved, ahead + problem.pushed)
             self._commit(u, found, multipliers, force, size, time)
-        return force
+        return along
 
     def sums(self) -> dict[str, float]:
         """Contact output of a frame."""
@@ -167,6 +168,7 @@ class ForwardContact:
         return pair.evaluate(x, x, self.contact.system.nlgeom)
 
     def _forces(self, found: list[Terms], multipliers: Floats) -> tuple[Floats, Floats]:
+        """Forces in global axes, and their sizes, shape (n_dofs,)."""
         contact, n = self.contact, self.contact.system.n_dofs
         force, size = np.zeros(n), np.zeros(n)
         for pair, terms, (p, q) in contact.each(found, multipliers):
@@ -402,11 +404,14 @@ class _Increment:
             for offset, gradient in kinds:
                 flat, value = where.ravel(), gradient[kept].ravel()
                 acts = (flat >= 0) & (value != 0.0)
-                acts[acts] &= self.inverse[flat[acts]] > 0.0
                 rows.append(offset + row[acts])
                 columns.append(flat[acts])
                 values.append(value[acts])
-        return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
+        along, dofs, parts = self.contact.system.constraints.entries_to_axes(
+            np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
+        )
+        acts = self.inverse[dofs] > 0.0
+        return along[acts], dofs[acts], parts[acts]
 
     def _laws(self, movable: NDArray[np.bool_], place: Ints) -> list[tuple[Ints, Law]]:
         out: list[tuple[Ints, Law]] = []
@@ -453,6 +458,7 @@ def _compliance(rows: Ints, columns: Ints, values: Floats, mass: Floats, n: int)
 
 def travel(contact: ContactTerm, terms: Terms, gradient: Floats, moved: Floats, n: int) -> Floats:
     """Change of the gaps or slips of a pair by a displacement, linearized, shape (n,)."""
+    moved = contact.system.in_space(moved)
     by_dof = np.append(moved, 0.0)[contact.dofs(terms.variables)]
     return np.asarray(np.bincount(terms.constraint, (gradient * by_dof).sum(axis=1), n), np.float64)
 
