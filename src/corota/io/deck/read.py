@@ -38,23 +38,7 @@ def read_deck(
     parameters: Mapping[str, float] | None = None,
     library: str | os.PathLike[str] | None = None,
 ) -> Model:
-    """Read a CalculiX or Abaqus deck.
-
-    Parameters
-    ----------
-    path : path-like
-    element_map : mapping of str to str, optional
-        Element names to replace, such as ``{"CPS4": "Q4D"}``; the plane state stays.
-    lenient : bool, optional
-        Whether unknown keywords and parameters are warned about instead of refused.
-    allow_include : bool, optional
-        Whether ``*INCLUDE`` may leave the deck's folder.
-    as_written : bool, optional
-        Take reduced integration literally (CPS4R becomes Q4R instead of Q4I).
-    parameters : mapping of str to float, optional
-        Values of ``*PARAMETER`` names that replace those of the deck.
-    library : path-like, optional
-        Library with the UMAT of ``*USER MATERIAL``. Its code is loaded: name one that you trust.
+    """Read a CalculiX or Abaqus deck; parameters as of :func:`corota.io.formats.read`.
 
     Returns
     -------
