@@ -40,10 +40,9 @@ if TYPE_CHECKING:
     from corota.analysis.terms.contact.gaps import Kink
     from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.term import StatePoint
+    from corota.arrays import Floats, Ints
     from corota.model.steps import Step
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
     #: A pair, its gaps and slips, and its tractions p and q.
     Each = tuple[Pair, Terms, tuple[Floats, Floats]]
@@ -678,6 +677,3 @@ def few(labels: Sequence[int] | Ints, most: int = 5) -> str:
     """The first labels of a list."""
     shown = ", ".join(str(n) for n in labels[:most])
     return shown + (", ..." if len(labels) > most else "")
-
-
-__all__ = ["ContactTerm", "few"]

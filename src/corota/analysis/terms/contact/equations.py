@@ -29,9 +29,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.evaluation import Evaluation
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
 
 #: Complementarity tolerance from which only digits are missing: states that do not change any more
@@ -235,6 +234,3 @@ class ContactEquations(ContactProblem):
     def explain(self, at: Evaluation | None) -> str:
         """Pair and nodes that caused a failed increment, and what was tried."""
         return explanation(self, at)
-
-
-__all__ = ["SETTLED", "ContactEquations"]

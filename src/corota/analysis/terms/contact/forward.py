@@ -47,9 +47,8 @@ if TYPE_CHECKING:
     from corota.analysis.energies import Energies
     from corota.analysis.equations import System
     from corota.analysis.terms.contact.pair import Pair, Terms
+    from corota.arrays import Bools, Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     States = NDArray[np.int8]
     #: Pressures and their derivatives of some constraints at some gaps.
     Law = Callable[[Ints, Floats], tuple[Floats, Floats]]
@@ -337,9 +336,7 @@ class _Increment:
         ]
         return 2.0 * np.concatenate(starts)
 
-    def _forces(
-        self, chosen: NDArray[np.bool_]
-    ) -> tuple[NDArray[np.bool_], Floats, Floats, Floats]:
+    def _forces(self, chosen: Bools) -> tuple[Bools, Floats, Floats, Floats]:
         """Forces of some constraints: which can act, p and q, and the resulting motion."""
         rows, columns, values = self._gradients(chosen)
         dofs, columns = np.unique(columns, return_inverse=True)
@@ -390,7 +387,7 @@ class _Increment:
         pushed[dofs] = self.own.dt**2 * mass * moved
         return movable, p, q, pushed
 
-    def _gradients(self, chosen: NDArray[np.bool_]) -> tuple[Ints, Ints, Floats]:
+    def _gradients(self, chosen: Bools) -> tuple[Ints, Ints, Floats]:
         """Triplets of the gradients of gaps, and of slips behind them, where masses move."""
         rows, columns, values = [], [], []
         for (pair, terms), first in zip(self._each(), self.first, strict=False):
@@ -413,7 +410,7 @@ class _Increment:
         acts = self.inverse[dofs] > 0.0
         return along[acts], dofs[acts], parts[acts]
 
-    def _laws(self, movable: NDArray[np.bool_], place: Ints) -> list[tuple[Ints, Law]]:
+    def _laws(self, movable: Bools, place: Ints) -> list[tuple[Ints, Law]]:
         out: list[tuple[Ints, Law]] = []
         area = self.area[movable]
         for (pair, _), first in zip(self._each(), self.first, strict=False):
@@ -428,7 +425,7 @@ class _Increment:
             out.append((place[first + mine], law))
         return out
 
-    def _check(self, held: NDArray[np.bool_]) -> None:
+    def _check(self, held: Bools) -> None:
         """Refuse two fixed surfaces that are pressed into each other."""
         for (pair, _), first in zip(self._each(), self.first, strict=False):
             if pair.tied or pair.law is not None:
@@ -499,7 +496,7 @@ class UnilateralConstraints:
     slip: Floats
     of: Ints
     friction: Floats
-    tied: NDArray[np.bool_]
+    tied: Bools
     tolerance: Floats
     soft: Floats
     share: Floats
@@ -684,6 +681,3 @@ def forward_contact(
     if not contact.pairs:
         return NoForwardContact(system.n_dofs)
     return ForwardContact(contact, account, dt)
-
-
-__all__ = ["ForwardContact", "NoForwardContact", "UnilateralConstraints", "forward_contact"]

@@ -24,9 +24,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.linear.types import Kind
+    from corota.arrays import Bools, Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: States of a constraint, as the laws of the core number them.
 OPEN, CLOSED, SLIPPING = 0, 1, 2
@@ -183,9 +182,9 @@ class Kink:
         self.share = share + part * change
 
 
-def covered(area: Floats, full: Floats) -> NDArray[np.bool_]:
+def covered(area: Floats, full: Floats) -> Bools:
     """Which constraints have an opposite surface: by their areas there and their full ones."""
-    found: NDArray[np.bool_] = area > SAME * full
+    found: Bools = area > SAME * full
     return found
 
 
@@ -291,23 +290,3 @@ def _without_symmetry(curve: object, variables: Ints, x: Floats, move: Floats) -
     out_y = np.zeros_like(dy)
     out_y[:, 1:] = dy[:, :-1]
     return np.where(first, dx, np.where(second, out_y, 0.0))
-
-
-__all__ = [
-    "CLOSED",
-    "COMPLIANCE",
-    "HALVINGS",
-    "OPEN",
-    "PATIENCE",
-    "SAME",
-    "SLIPPING",
-    "SMALL",
-    "WAITED",
-    "ContactState",
-    "Kink",
-    "Terms",
-    "covered",
-    "discrete_gradient",
-    "mean",
-    "no_contact",
-]

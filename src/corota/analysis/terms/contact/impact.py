@@ -22,14 +22,11 @@ from corota.analysis.terms.contact.pair import OPEN
 from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.terms.contact.gaps import ContactState
     from corota.analysis.terms.contact.pair import Pair, Terms
     from corota.analysis.terms.inertia import MotionState
-
-    Floats = NDArray[np.float64]
+    from corota.arrays import Bools, Floats
 
 
 def impact_error(
@@ -127,7 +124,7 @@ class Approach:
 
     recomputed: ClassVar[frozenset[str]] = frozenset({"system", "term", "part", "heavy"})
 
-    def __init__(self, system: System, massless: NDArray[np.bool_]) -> None:
+    def __init__(self, system: System, massless: Bools) -> None:
         self.system, self.term = system, system.term(ContactTerm)
         self.meets = self.limited = False
         self.in_a_row = 0
@@ -201,7 +198,7 @@ class Approach:
 
 
 def _time_to_contact(
-    pair: Pair, terms: Terms, seen: NDArray[np.bool_], rates: Floats, acceleration: Floats
+    pair: Pair, terms: Terms, seen: Bools, rates: Floats, acceleration: Floats
 ) -> tuple[float, bool]:
     """Time to the end of the next increment towards contact, and whether contact begins there."""
     if not seen.any():
@@ -229,6 +226,3 @@ def _time_to_contact(
     time = np.where(meets, 2.0 * way / np.where(meets, root, 1.0), np.inf)
     first = int(np.argmin(time))
     return float(time[first]), not bool(wide[first])
-
-
-__all__ = ["Approach", "impact_error"]

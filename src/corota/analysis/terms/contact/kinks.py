@@ -24,17 +24,14 @@ from corota.analysis.terms.contact.problem import RightHandSides
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.gaps import ContactState
     from corota.analysis.terms.contact.pair import Terms
     from corota.analysis.terms.contact.problem import ContactProblem
     from corota.analysis.terms.term import StatePoint
+    from corota.arrays import Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Share that tells a jump from a gradual change: of a difference of contact forces, which halves
 #: with the way if it is gradual, and of a correction, which the next one takes back at a jump.
@@ -272,6 +269,3 @@ def along_kink(
     kink.base = (problem.places[-1], kink.share, dz[: problem.n].copy(), change)
     problem.stage = "equilibrium at a kink of the contact surfaces"
     return problem.moved(dz), negative
-
-
-__all__ = ["Sides", "along_kink", "both_sides", "found", "keeps_kink", "near_side"]

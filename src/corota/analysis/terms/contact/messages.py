@@ -22,16 +22,13 @@ from corota.analysis.terms.contact.tunneling import NAMED
 from corota.model.contact import ContactPair, RigidCurve
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.contact.problem import ContactProblem
+    from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Message alone: part that counts as the whole: of the force of a pair that a node carries alone,
 #: of a friction bound that is used up, of an area.
@@ -399,13 +396,3 @@ def _deepest(pair: Pair, mesh: Mesh, x: Floats) -> tuple[float, int]:
         if depth[k] > worst:
             worst, node = float(depth[k]), int(core.nodes[k])
     return worst, node
-
-
-__all__ = [
-    "explanation",
-    "gives_way",
-    "guided_round_note",
-    "start_notes",
-    "sunk_between",
-    "sunk_corner",
-]

@@ -18,14 +18,11 @@ from corota.analysis.terms.contact.gaps import CHANGES, PATIENCE
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import Outcome, ResidualNorms, Settings
     from corota.analysis.terms.contact.equations import ContactEquations
-
-    Floats = NDArray[np.float64]
+    from corota.arrays import Floats
 
 
 class NoContact:
@@ -126,6 +123,3 @@ def solve_increment(
         again.iterations += found.iterations
         found = again
     return problem.settle(found), problem
-
-
-__all__ = ["NoContact", "solve_increment"]

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
+    from corota.arrays import Bools, Floats
 
-    Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
     Event = tuple[float, int, int, int]
 
@@ -400,10 +400,7 @@ class EventPath:
         return best
 
 
-def _reach(margin: Floats, rate: Floats, which: NDArray[np.bool_]) -> Floats:
+def _reach(margin: Floats, rate: Floats, which: Bools) -> Floats:
     """Distances after which quantities that decrease at a rate reach zero."""
     shrinks = which & (rate > 0.0)
     return np.where(shrinks, np.maximum(margin, 0.0) / np.where(shrinks, rate, 1.0), np.inf)
-
-
-__all__ = ["ContactPathEquations", "path_system", "predict_through_events"]

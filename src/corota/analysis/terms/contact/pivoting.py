@@ -34,9 +34,8 @@ if TYPE_CHECKING:
 
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.problem import ContactProblem
+    from corota.arrays import Bools, Floats, Ints
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
     #: Correction of dofs and multipliers, its states, signs of slipping tractions.
     Found = tuple[Floats, States, list[Floats]]
@@ -46,7 +45,7 @@ if TYPE_CHECKING:
 ZERO, TIE = 1e-11, 1e-10
 
 
-def lemke(c: Floats, m: Floats) -> tuple[Floats, NDArray[np.bool_]] | None:
+def lemke(c: Floats, m: Floats) -> tuple[Floats, Bools] | None:
     """Solve ``y = c + m x, x >= 0, y >= 0, x y = 0``.
 
     Parameters
@@ -97,9 +96,7 @@ def lemke(c: Floats, m: Floats) -> tuple[Floats, NDArray[np.bool_]] | None:
     return None
 
 
-def _leaving(
-    table: Floats, column: Floats, able: NDArray[np.int64], base: NDArray[np.int64], n: int
-) -> int:
+def _leaving(table: Floats, column: Floats, able: Ints, base: Ints, n: int) -> int:
     """Row that leaves the basis; of ties the artificial variable, then the lexicographic least."""
     ratio = np.maximum(table[able, -1], 0.0) / column[able]
     size = max(float(np.abs(table[:, -1]).max()) / max(float(np.abs(column).max()), 1e-300), 1e-300)
@@ -183,12 +180,12 @@ class Pivoting:
 
     # -- which constraints ------------------------------------------------------------
 
-    def _able(self, k: int) -> NDArray[np.bool_]:
+    def _able(self, k: int) -> Bools:
         """Constraints that may change their state."""
         pair, terms, _ = self.pairs[k]
         if pair.tied or pair.law is not None or pair.shear_limit < np.inf or not pair.separates:
             return np.zeros(pair.n, bool)
-        able: NDArray[np.bool_] = covered(terms.area, pair.full) & np.isfinite(pair.stiffness)
+        able: Bools = covered(terms.area, pair.full) & np.isfinite(pair.stiffness)
         return able
 
     def _first(self, base: States) -> list[Chosen]:
@@ -203,7 +200,7 @@ class Pivoting:
             wanted.append(mask)
         return self._listed(wanted)
 
-    def _listed(self, wanted: list[NDArray[np.bool_]]) -> list[Chosen]:
+    def _listed(self, wanted: list[Bools]) -> list[Chosen]:
         left = MOST
         out = []
         for k, mask in enumerate(wanted):
@@ -413,7 +410,7 @@ class Pivoting:
         slip_directions: list[Floats],
         kinds: list[tuple[int, int, str]],
         x: Floats,
-        basic: NDArray[np.bool_],
+        basic: Bools,
         inputs: list[tuple[int, float]],
         traction: Floats,
     ) -> tuple[States, list[Floats]]:
@@ -491,6 +488,3 @@ def _small(problem: ContactProblem) -> float:
     """Force that counts as zero."""
     scales = problem.system.scales
     return SAME * max(scales.force, scales.zero_force)
-
-
-__all__ = ["lemke", "pivoted"]

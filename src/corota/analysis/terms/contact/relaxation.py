@@ -51,8 +51,8 @@ if TYPE_CHECKING:
     from corota.analysis.newton import ResidualNorms, Settings
     from corota.analysis.terms.contact.pair import Terms
     from corota.analysis.terms.contact.problem import ContactProblem
+    from corota.arrays import Floats
 
-    Floats = NDArray[np.float64]
 
 #: Limit of corrections in a relaxation.
 MOST = 400
@@ -365,6 +365,3 @@ def _stable_mass(system: System, values: Floats) -> Floats:
     rows: Floats = system.pattern.multiply(np.abs(values), np.ones(system.n_dofs))
     out: Floats = 0.25 * SAFETY * np.maximum(rows, SAME * rows.max())
     return out
-
-
-__all__ = ["REMAINS", "Rest", "come_to_rest", "relax"]

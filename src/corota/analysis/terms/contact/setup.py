@@ -31,13 +31,10 @@ from corota.model.constraints import Coupling
 from corota.model.contact import ContactPair, RigidCurve, Tie, joint_thickness
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.numbered_model import NumberedModel
+    from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Default search distance of pairs, in edges.
 REACH = 4.0
@@ -438,7 +435,7 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
     return Surface(name, edges, nodes, bulge, thickness, length, np.full(n, -1.0))
 
 
-def _among(edges: Ints, others: Ints) -> NDArray[np.bool_]:
+def _among(edges: Ints, others: Ints) -> Bools:
     """Which edges are in a list of others."""
     many = 1 + max(int(edges[:, 1].max(initial=0)), int(others[:, 1].max(initial=0)))
     key = edges[:, 0] * many + edges[:, 1]
@@ -691,16 +688,3 @@ def _towards(x: Floats, slave: Surface, master: Surface, out: Floats) -> bool:
     # The corner of the master's box farthest along each normal.
     corner = np.where(out > 0.0, high, low)
     return bool((((corner - at) * out).sum(axis=1) > -0.5 * slave.length.max()).any())
-
-
-__all__ = [
-    "Surface",
-    "blunt_turns",
-    "contact_core",
-    "core_of",
-    "of_lines",
-    "sharp_corners",
-    "smoothed",
-    "surface",
-    "tie_core",
-]

@@ -28,10 +28,9 @@ if TYPE_CHECKING:
 
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.contact.pair import Pair, Terms
+    from corota.arrays import Bools, Floats, Ints
     from corota.model.model import Model
 
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Search radius: fraction of the reach, and of the width of a body, that a node may move without
 #: this check; in relaxation, fraction of the shortest slave edge from a position to the next.
@@ -261,7 +260,7 @@ def _near(
         yield k[meet], piece[meet]
 
 
-def _beside(pieces: Floats, x: Floats) -> NDArray[np.bool_]:
+def _beside(pieces: Floats, x: Floats) -> Bools:
     """Whether the feet of points on the lines through pieces lie on these."""
     d = pieces[:, 1] - pieces[:, 0]
     along = ((x - pieces[:, 0]) * d).sum(axis=1) / (d * d).sum(axis=1)
@@ -357,9 +356,7 @@ def _refuse(system: NumberedModel, pair: Pair, node: int, depth: float, size: fl
     )
 
 
-def _signed(
-    pieces: Floats, points: Floats, same: float
-) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+def _signed(pieces: Floats, points: Floats, same: float) -> tuple[Floats, Floats, Bools]:
     """Signed distance to the nearest piece, positive in front, and the normal there.
 
     The last part of the result is whether the nearest point lies on the curve, not at a free end.
@@ -386,7 +383,7 @@ def _signed(
     return distance, normals[best], ~beyond
 
 
-def _free_ends(pieces: Floats, same: float) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _free_ends(pieces: Floats, same: float) -> tuple[Bools, Bools]:
     """Whether the first and last ends of pieces are free: no other end is there."""
     joints = np.concatenate([pieces[:, 0], pieces[:, 1]])
     free = np.empty(len(joints), bool)
@@ -501,15 +498,3 @@ def _distance(x: Floats, rim: Ints, node: int) -> float:
 def _surface_nodes(model: Model, surface: str | Ints) -> Ints:
     edges, single = edges_or_nodes(model.mesh, surface)
     return single if len(single) else model.mesh.edge_set_nodes(edges)
-
-
-__all__ = [
-    "NAMED",
-    "UNSEEN",
-    "check_side",
-    "other_side",
-    "outside",
-    "passed",
-    "passed_through",
-    "times_of_crossing",
-]
