@@ -158,3 +158,21 @@ def test_what_cannot_be_smoothed_is_said():
     model = ct.Model(mesh)
     with pytest.raises(InputError, match="only a master of element edges"):
         model.contact("bottom", ct.RigidCurve.line((-1.0, 0.0), (2.0, 0.0)), smooth=True)
+
+
+@pytest.mark.parametrize(("method", "noted"), [("node_to_segment", True), ("mortar", False)])
+def test_facets_beside_an_overlap_are_noted(method, noted):
+    """A quarter of a press fit of .004, whose master has facets .0019 high: force 1.39 by nodes."""
+    inner, outer = ct.mesh.annulus(1.0, 2.004, 3, 24, 90.0), ct.mesh.annulus(2.0, 3.0, 3, 18, 90.0)
+    model = ct.Model(ct.mesh.assembly(inner=inner, outer=outer))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3))
+    for body in ("inner", "outer"):
+        model.fix(f"{body}.start", x=None)
+        model.fix(f"{body}.end", y=None)
+    model.contact("inner.outer", "outer.inner", method=method, name="fit")
+    results = ct.solve(model, ct.Static(), threads=1)
+    # Lame: the displacements of both rings under the pressure are the overlap.
+    p = 0.004 * 1e4 / 2.0 / (5.0 / 3.0 - 0.3 + 13.0 / 5.0 + 0.3)
+    right = results.frames[-1].scalars["fit: force x"] / (2.0 * p)
+    assert (abs(abs(right) - 1.0) < 0.01) is not noted
+    assert any("inside its rounds" in note for note in results.notes) is noted

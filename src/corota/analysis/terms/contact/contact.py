@@ -55,6 +55,7 @@ what_gives_way = lazy("corota.analysis.terms.contact.messages:gives_way")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 near_side = lazy("corota.analysis.terms.contact.kinks:near_side")
 passed_through = lazy("corota.analysis.terms.contact.tunneling:passed_through")
+facet_note = lazy("corota.analysis.terms.contact.messages:facet_note")
 start_notes = lazy("corota.analysis.terms.contact.messages:start_notes")
 sunk_between = lazy("corota.analysis.terms.contact.messages:sunk_between")
 sunk_corner = lazy("corota.analysis.terms.contact.messages:sunk_corner")
@@ -383,6 +384,8 @@ class ContactTerm(Term):
                 f"contact pair {pair.name!r}: the surfaces overlap by up to "
                 f"{-gap[deepest]:.4g} at node {label} at the start{lines}; this {how}"
             )
+            if facets := facet_note(pair, mesh.points, -float(gap[deepest])):
+                self.notes.append(facets)
         if adjusted:
             within = seen & (gap <= item.adjust)
             if item.adjust_nodes is not None:

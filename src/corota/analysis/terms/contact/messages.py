@@ -139,6 +139,8 @@ def gives_way(contact_term: ContactTerm) -> str:
 #: Notes alone: slave edges that a round corner should measure along its radius, its least turn,
 #: and that from which hard contact has no constraint of it as a corner [rad].
 EDGES, TURN, PIN = 2.0, math.radians(20.0), 3.1
+#: Note alone: height of the facets of a meshed round, relative to an overlap at the start.
+FACETS = 0.02
 
 
 def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
@@ -241,6 +243,31 @@ def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
         f"from edge to edge at node {labels[node]}; the force will jump when contact passes such "
         "nodes. Where the boundary should be round, treat it as a curve (smooth=True, SMOOTH of "
         "*CONTACT PAIR) or refine its edges"
+    )
+
+
+def facet_note(pair: Pair, points: Floats, overlap: float) -> str:
+    """A remark on an overlap of rounds whose meshed master has facets that count beside it, or ''.
+
+    With node_to_segment an edge of the length h that turns by t lies h t / 8 inside its round.
+    """
+    if pair.master is None or pair.beside is not None or getattr(pair.item, "smooth", True):
+        return ""
+    if pair.slave.pointwise or not blunt_turns(points, pair.slave):
+        return ""
+    turns = blunt_turns(points, pair.master)
+    height = 0.0
+    for a, b, middle in pair.master.nodes.tolist():
+        turn = min(turns.get(a, 0.0), turns.get(b, 0.0))
+        if middle < 0 and turn <= TURN:
+            height = max(height, float(np.hypot(*(points[b] - points[a]))) * turn / 8.0)
+    if height <= FACETS * overlap:
+        return ""
+    return (
+        f"contact pair {pair.item.name!r}: edges of the master lie up to {height:.3g} inside its "
+        f"rounds, {height / overlap:.2g} of the overlap, and count as they are: pressures are "
+        "uneven, and the force is off by this order. Take mortar contact, which counts them as "
+        "arcs, or shorter edges"
     )
 
 
