@@ -66,21 +66,26 @@ def lemke(c: Floats, m: Floats) -> tuple[Floats, Bools] | None:
     basic = np.zeros(n, bool)
     if n == 0 or c.min() >= 0.0:
         return np.zeros(n), basic
-    # Columns: y (n), x (n), the artificial variable, right-hand side: y - m x - d t = c.
-    table = np.concatenate([np.eye(n), -m, -np.ones((n, 1)), c[:, None]], axis=1)
-    base = np.arange(n)
-    row = int(np.argmin(c))
-    entering = 2 * n
+    # Columns of the variables that are not in the basis, at first x and the artificial one; then
+    # the right-hand side: y - m x - d t = c. Variables: y (n), x (n), the artificial one.
+    table = np.concatenate([-m, -np.ones((n, 1)), c[:, None]], axis=1)
+    change = np.empty_like(table)
+    base, others = np.arange(n), np.arange(n, 2 * n + 1)
+    row, at = int(np.argmin(c)), n
     seen: set[bytes] = set()
     while (now := base.tobytes()) not in seen:  # no basis comes twice, but by rounding
         seen.add(now)
-        leaving = int(base[row])
-        pivot = table[row] / table[row, entering]
-        column = table[:, entering].copy()
+        column = table[:, at].copy()
+        # The variable that leaves had the column of a basis.
+        table[:, at] = 0.0
+        table[row, at] = 1.0
+        pivot = table[row] / column[row]
         column[row] = 0.0
-        table -= np.outer(column, pivot)
+        np.multiply(column[:, None], pivot, out=change)
+        table -= change
         table[row] = pivot
-        base[row] = entering
+        base[row], others[at] = others[at], base[row]
+        leaving = int(others[at])
         if leaving == 2 * n:
             x = np.zeros(n)
             inside = (base >= n) & (base < 2 * n)
@@ -88,26 +93,30 @@ def lemke(c: Floats, m: Floats) -> tuple[Floats, Bools] | None:
             basic[base[inside] - n] = True
             return np.maximum(x, 0.0), basic
         entering = leaving + n if leaving < n else leaving - n
-        column = table[:, entering]
+        at = int(np.flatnonzero(others == entering)[0])
+        column = table[:, at]
         able = np.flatnonzero(column > ZERO * max(1.0, float(np.abs(column).max())))
         if not len(able):
             return None
-        row = _leaving(table, column, able, base, n)
+        row = _leaving(table, column, able, base, others)
     return None
 
 
-def _leaving(table: Floats, column: Floats, able: Ints, base: Ints, n: int) -> int:
+def _leaving(table: Floats, column: Floats, able: Ints, base: Ints, others: Ints) -> int:
     """Row that leaves the basis; of ties the artificial variable, then the lexicographic least."""
     ratio = np.maximum(table[able, -1], 0.0) / column[able]
     size = max(float(np.abs(table[:, -1]).max()) / max(float(np.abs(column).max()), 1e-300), 1e-300)
     tied = able[ratio <= ratio.min() + TIE * min(size, max(float(ratio.min()), 1e-4 * size))]
+    n = len(base)
     final = np.flatnonzero(base[tied] == 2 * n)
     if len(final):
         return int(tied[final[0]])
     for k in range(n):
         if len(tied) == 1:
             break
-        other = table[tied, k] / column[tied]
+        outside = np.flatnonzero(others == k)
+        row = table[tied, outside[0]] if len(outside) else (base[tied] == k).astype(float)
+        other = row / column[tied]
         tied = tied[other <= other.min() + TIE * max(1.0, float(np.abs(other).max()))]
     # Of rows that are equal to rounding, the one with the largest pivot.
     return int(tied[np.argmax(column[tied])])
