@@ -82,7 +82,20 @@ def rubbing():
     return model
 
 
+def peaked():
+    """A block that is pressed on a floor and let go, with its largest force between increments."""
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, nx=2, ny=2))
+    model.section("all", element="Q4I", material=ELASTIC)
+    model.contact("bottom", ct.RigidCurve.line((-1.0, 0.0), (2.0, 0.0)), name="floor")
+    model.amplitudes["push"] = ct.Amplitude(np.array([0.0, 0.5, 1.0]), np.array([0.0, 1.0, 0.1]))
+    step = ct.Static(increments=5)
+    step.fix("top", x=0.0, y=-0.01, amplitude="push")
+    model.steps = [step]
+    return model
+
+
 QUICK = {
+    "a peak between increments": peaked,
     "elements that leave and come back": thinned,
     "friction that falls": rubbing,
     "static": lambda: beam([ct.Static(increments=4)]),

@@ -18,6 +18,13 @@ STEEP = 0.05
 FLAT = 1e-3
 ROUNDING = 1e-9
 
+#: Step, from 1, step time and size of the force of a pair in an increment.
+Instant = tuple[int, float, float]
+#: No increment.
+NONE: Instant = (0, 0.0, -1.0)
+#: The last increment, that before the largest force, that of it, and the one behind.
+Peak = tuple[Instant, Instant, Instant, Instant]
+
 
 def pair_forces(
     pairs: list[ContactPair], scalars: dict[str, float], pressure: float
@@ -38,30 +45,37 @@ def pair_forces(
     return found
 
 
-def missed_peaks(
-    increments: list[tuple[int, float, list[float]]], pairs: list[ContactPair]
-) -> list[str]:
+def followed(peak: Peak, now: Instant) -> Peak:
+    """Where the largest force of a pair stands after one more increment."""
+    last, before, most, after = peak
+    if now[2] > most[2]:
+        before, most, after = last, now, NONE
+    elif not after[0]:
+        after = now
+    return now, before, most, after
+
+
+def missed_peaks(peaks: list[Peak], pairs: list[ContactPair]) -> list[str]:
     """Notes on largest forces of pairs beside which the force changes much in one increment.
 
     Parameters
     ----------
-    increments : list of tuple of int, float and list of float
-        Step, step time and :func:`pair_forces` of each increment of the static steps; in motion
-        the scheme bounds the error of an increment.
+    peaks : list of Peak
+        Of each pair, over the increments of the static steps; in motion the scheme bounds the
+        error of an increment.
     pairs : list of ContactPair
     """
     notes: list[str] = []
-    for k, pair in enumerate(pairs):
-        force = np.array([forces[k] for _, _, forces in increments])
-        i = int(np.argmax(force)) if len(force) else 0
-        if not 0 < i < len(force) - 1 or increments[i - 1][0] != increments[i + 1][0]:
+    for (_, (begin, _, before), (step, time, most), (end, _, after)), pair in zip(
+        peaks, pairs, strict=True
+    ):
+        if not begin or begin != end:
             continue
-        before, most, after = force[i - 1 : i + 2]
         alone = most - max(before, after) > FLAT * most
         if alone and most - min(before, after) > STEEP * most:
             notes.append(
                 f"contact pair {pair.name!r}: the largest force, {most:.4g}, at step time "
-                f"{increments[i][1]:.4g} of step {increments[i][0]}, stands between {before:.4g} "
+                f"{time:.4g} of step {step}, stands between {before:.4g} "
                 f"and {after:.4g} of the increments beside it, between which it may be larger: a "
                 "smaller largest_increment resolves the peak"
             )

@@ -21,7 +21,7 @@ from corota.analysis.failure import ElementFailure
 from corota.analysis.increment_loop import IncrementLoop
 from corota.analysis.linear.solvers import LinearSolver, make_solver
 from corota.analysis.memory import require_libraries
-from corota.analysis.missed_peaks import missed_peaks, pair_forces
+from corota.analysis.missed_peaks import NONE, followed, missed_peaks, pair_forces
 from corota.analysis.observers import Observers
 from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.analysis.procedures.localization import localized
@@ -184,8 +184,6 @@ class Analysis:
         self.model, self.fields = model, fields
         self.observers = Observers(observers)
         self.results = Results(model, keep=keep)
-        #: Step, step time and forces of pairs of each increment of static steps.
-        self.pair_forces: list[tuple[int, float, list[float]]] = []
         self.steps, notes = keep_nlgeom(
             listed_steps(steps), any(s.material.local_strain for s in model.sections)
         )
@@ -249,6 +247,7 @@ class Analysis:
                 modes=results.modes,
                 notes=results.notes,
                 energies=Energies(self.system),
+                peaks=[(NONE,) * 4 for _ in self.model.contacts],
             )
             reaction = None
             begin_at = 1 if self.start is None else self.start.step
@@ -266,7 +265,7 @@ class Analysis:
                 results.notes.append(remark)
                 if state.energies.made_by_contact:
                     warnings.warn(remark, stacklevel=3)
-            results.notes += missed_peaks(self.pair_forces, self.model.contacts)
+            results.notes += missed_peaks(state.peaks, self.model.contacts)
             results.notes += self.system.remarks(state.u, finished=True)
             if not state.u.any() and not results.modes and self._without_cause():
                 results.notes.append("nothing moved: no step has a load or a moving support")
@@ -515,7 +514,10 @@ class Analysis:
         if self.model.contacts and kind == "static":
             pressure = 0.0 if contact is None else float(np.max(contact[:, 0], initial=0.0))
             forces = pair_forces(self.model.contacts, scalars, pressure)
-            self.pair_forces.append((number, state.step_time, forces))
+            state.peaks[:] = (
+                followed(peak, (number, state.step_time, force))
+                for peak, force in zip(state.peaks, forces, strict=True)
+            )
         frame = Frame(
             number,
             increment,

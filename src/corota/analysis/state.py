@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.energies import Energies
     from corota.analysis.evaluation import Evaluation
+    from corota.analysis.missed_peaks import Peak
     from corota.analysis.newton import Outcome
     from corota.analysis.stages import StageRecorder
     from corota.analysis.terms.linearized import LinearMotion
@@ -70,6 +71,8 @@ class State:
     strains : list of tuple (float, int, int)
         Largest local strain under the linear measure so far, and that of the last frame, with
         their step and increment.
+    peaks : list of Peak
+        Where the largest force of each contact pair stands so far.
     linear : LinearMotion or None
         Matrices that the last vibration modes belong to.
     stages : StageRecorder or None
@@ -102,6 +105,7 @@ class State:
     modes: list[Modes] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     strains: list[tuple[float, int, int]] = field(default_factory=lambda: [(0.0, 0, 0)] * 2)
+    peaks: list[Peak] = field(default_factory=list)
     linear: LinearMotion | None = None
     stages: StageRecorder | None = None
     harmonic: Floats | None = None
