@@ -41,10 +41,10 @@ from benchmarks.common import machine, write_between
 from benchmarks.kill_worker import JOB, Case, Strike, run
 from benchmarks.restart_cases import DECKS, EXAMPLES, MODELS, SWEEPS
 from benchmarks.same_bits import folder_differences, records
-from corota.analysis.procedures.registry import PROCEDURES
 from corota.errors import FileError
 from corota.io.checkpoint import newest
 from corota.io.job import JobFiles
+from corota.model.steps import Step
 
 try:
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -287,7 +287,8 @@ def checkpoint_promised(folder: Path) -> bool:
 
 def goes_on(procedure: str) -> bool:
     """Whether a procedure's stepper has a state that checkpoints hold."""
-    module = import_module(f"corota.analysis.procedures.{PROCEDURES[procedure][0]}")
+    of_procedure = {step.procedure: step for step in Step.__subclasses__()}
+    module = import_module(of_procedure[procedure].run.__module__)
     own = [c for c in vars(module).values() if getattr(c, "__module__", "") == module.__name__]
     return any(hasattr(c, "memory") and c.kind for c in own)
 

@@ -29,5 +29,5 @@ def lazy(place: str) -> Callable[..., Any]:
         found = getattr(modules.get(module), name, None) or getattr(import_module(module), name)
         return found(*args, **options)
 
-    call.__name__ = call.__qualname__ = name
+    call.__module__, call.__name__, call.__qualname__ = module, name, name
     return call

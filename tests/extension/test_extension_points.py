@@ -12,6 +12,7 @@ import scipy.sparse as sp
 
 import corota as ct
 from corota.analysis.evaluation import Evaluation
+from corota.analysis.increment_loop import Accepted, IncrementLoop
 from corota.analysis.linear.solvers import SOLVERS
 from corota.analysis.terms.term import TERMS, StatePoint, Term
 from corota.errors import InputError
@@ -349,6 +350,65 @@ def test_result_writer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setitem(WRITERS, ".txt", write)
     results.write(tmp_path / "strip.txt")
     assert np.loadtxt(tmp_path / "strip.txt") == pytest.approx(results.frames[-1].U)
+
+
+# -- procedures ----------------------------------------------------------------------------
+
+
+class Euler:
+    """Increments of one solution each: the tangent at their start, no iterations."""
+
+    kind, advice = "", ""
+
+    def __init__(self, loop: IncrementLoop, step: Any) -> None:
+        self.system, self.state, self.n = loop.system, loop.state, step.increments
+        self.taken = 0
+
+    @property
+    def finished(self) -> bool:
+        return self.taken == self.n
+
+    @property
+    def where(self) -> str:
+        return f"increment {self.taken} of {self.n}"
+
+    def memory(self) -> dict[str, object]:
+        return {}
+
+    def advance(self) -> Accepted:
+        system, state = self.system, self.state
+        self.taken += 1
+        state.step_time = self.taken / self.n
+        moved = np.where(
+            system.constrained, system.conditions.supports.at(state.step_time, state.u) - state.u, 0
+        )
+        correction, _ = system.predict(system.evaluate(state.u, state.step_time), moved)
+        state.u = state.u + correction
+        state.at = system.evaluate(state.u, state.step_time)
+        system.commit()
+        return Accepted(self.taken, state.step_time, {})
+
+
+class Explicit(ct.Static):
+    """Statics without iterations."""
+
+    procedure = "forward Euler"
+
+    @staticmethod
+    def run(loop: IncrementLoop, step: Any, stops: list[float]) -> None:
+        loop.run(Euler(loop, step))
+
+
+def test_procedure() -> None:
+    """What an increment leaves is corrected in the next, so that the error is of second order."""
+    wanted = ct.solve(strip(elastic()), ct.Static(increments=4), threads=1).frames[-1].U
+    errors = []
+    for n in (10, 20, 40):
+        results = ct.solve(strip(elastic()), Explicit(increments=n), threads=1)
+        assert len(results.frames) == n + 1
+        errors.append(np.abs(results.frames[-1].U - wanted).max() / np.abs(wanted).max())
+    assert errors[0] < 0.01
+    assert errors[0] > 4.0 * errors[1] > 16.0 * errors[2]
 
 
 # -- linear solvers ------------------------------------------------------------------------

@@ -25,7 +25,6 @@ from corota.analysis.missed_peaks import NONE, followed, missed_peaks, pair_forc
 from corota.analysis.observers import Observers
 from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.analysis.procedures.localization import localized
-from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
 from corota.analysis.terms.moving_mass import MovingMass, masses_of_steps
@@ -307,9 +306,10 @@ class Analysis:
         self, step: Step, number: int, state: State, reaction: Floats | None
     ) -> Floats | None:
         system = self.system
-        if step.procedure not in PROCEDURES:
+        if not hasattr(step, "run"):
             raise UnsupportedError(
-                f"no procedure {step.procedure!r}; there are {', '.join(PROCEDURES)}", step.where
+                f"{type(step).__name__} has no procedure: its class needs `procedure` and `run`",
+                step.where,
             )
         self.observers.step(number, step)
         state.loop = None
@@ -326,7 +326,7 @@ class Analysis:
             self._leave(state)
         else:
             loop = IncrementLoop(system, step, number, state, self.observers, save)
-            procedure(step.procedure)(loop, step, stops)
+            step.run(loop, step, stops)
             if state.loop is not None and step.restart:
                 increment = self.results.frames[-1].increment if self.results.frames else 0
                 last = take(self, state, (number, increment), 1.0)

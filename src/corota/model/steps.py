@@ -14,6 +14,7 @@ import numpy as np
 from corota.arrays import distinct
 from corota.display import Brief
 from corota.errors import InputError, number
+from corota.lazy import lazy
 from corota.mesh import selection
 from corota.model.element_changes import ElementChange
 from corota.model.loading import Loading
@@ -23,7 +24,7 @@ from corota.model.settings import Settings
 from corota.names import choose, choose_attribute
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -146,6 +147,14 @@ class Step(Brief, Loading, Settings):
     outputs : list of Output
     restart : int
         Keep a checkpoint every n increments and at the end of the step; 0 for none.
+
+    Attributes
+    ----------
+    procedure : str
+        Name of what a step of the class runs.
+    run : callable
+        Function of an :class:`~corota.analysis.increment_loop.IncrementLoop`, the step, and the
+        step times at which increments end.
     """
 
     nlgeom: bool = True
@@ -166,7 +175,8 @@ class Step(Brief, Loading, Settings):
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
 
-    procedure = ""
+    procedure: ClassVar[str] = ""
+    run: ClassVar[Callable[..., None]]
     excludes: ClassVar[dict[str, tuple[str, Any]]] = {"first_increment": ("increments", 0)}
     #: Whether the procedure computes velocities and forces of the initial state.
     starts_in_motion = False
@@ -396,6 +406,7 @@ class Static(Step):
     plastic_increment: float = 0.0
 
     procedure = "static"
+    run = staticmethod(lazy("corota.analysis.procedures.static:static_step"))
     #: Whether creep and relaxation take part.
     lasting: ClassVar[bool] = False
 
@@ -511,6 +522,7 @@ class Dynamic(Step):
     redistribute: bool = True
 
     procedure = "dynamic"
+    run = staticmethod(lazy("corota.analysis.procedures.dynamic:dynamic_step"))
     starts_in_motion = True
     lasting: ClassVar[bool] = True
 
@@ -555,6 +567,7 @@ class Buckle(Step):
     dead_loads: bool = field(default=False, compare=False)
 
     procedure = "buckle"
+    run = staticmethod(lazy("corota.analysis.procedures.buckling:buckle_step"))
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -589,6 +602,7 @@ class Frequency(Step):
     highest: float = math.inf
 
     procedure = "frequency"
+    run = staticmethod(lazy("corota.analysis.procedures.frequency:frequency_step"))
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -627,6 +641,7 @@ class ModalDynamic(Step):
     residual: bool = False
 
     procedure = "modal dynamic"
+    run = staticmethod(lazy("corota.analysis.procedures.modal:modal_step"))
 
     def __post_init__(self) -> None:
         if self.increments:
@@ -681,6 +696,7 @@ class SteadyState(Step):
     imaginary_supports: list[Fixed] = field(default_factory=list)
 
     procedure = "steady state"
+    run = staticmethod(lazy("corota.analysis.procedures.harmonic:steady_state_step"))
 
     def __post_init__(self) -> None:
         super().__post_init__()
