@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+import corota as ct
 from corota.mesh.data import Cells, Mesh
-from corota.model.materials import Elastic
-from corota.model.model import Model
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -26,15 +25,15 @@ def polyline(points: ArrayLike) -> Mesh:
 
 def _beams(
     points: ArrayLike, young: float, nu: float, area: float, inertia: float, shear: float
-) -> Model:
-    model = Model(polyline(points))
+) -> ct.Model:
+    model = ct.Model(polyline(points))
     lines = np.arange(model.mesh.n_cells)
-    material = Elastic(E=young, nu=nu)
+    material = ct.Elastic(E=young, nu=nu)
     model.beam(lines, material=material, area=area, inertia=inertia, shear_area=shear * area)
     return model
 
 
-def lee_frame(n: int = 60, shear: bool = True, scale: float = 1.0) -> tuple[Model, int]:
+def lee_frame(n: int = 60, shear: bool = True, scale: float = 1.0) -> tuple[ct.Model, int]:
     """Lee's frame: two legs of 120 with `n` beams each, A = 6, I = 2, E = 720, nu = 0.3.
 
     `scale` changes the unit of length; forces stay. The loaded node, 24 from the corner, comes
@@ -51,7 +50,7 @@ def lee_frame(n: int = 60, shear: bool = True, scale: float = 1.0) -> tuple[Mode
     return model, loaded
 
 
-def williams_toggle(n: int = 60, shear: bool = True) -> tuple[Model, int]:
+def williams_toggle(n: int = 60, shear: bool = True) -> tuple[ct.Model, int]:
     """Half of Williams' toggle, with the load of the whole: half span 12.943 in, rise .386."""
     way = np.linspace(0.0, 1.0, n + 1)
     points = np.stack([12.943 * way, 0.386 * way], axis=1)
@@ -63,7 +62,7 @@ def williams_toggle(n: int = 60, shear: bool = True) -> tuple[Model, int]:
     return model, n
 
 
-def deep_arch(n: int = 160) -> tuple[Model, int]:
+def deep_arch(n: int = 160) -> tuple[ct.Model, int]:
     """Arch of 215 degrees, R = 100, EI = 1e6, EA = kGA = 1e8: hinged left, clamped right.
 
     The load factor is the load over 1000. `n` must be even.
@@ -77,11 +76,11 @@ def deep_arch(n: int = 160) -> tuple[Model, int]:
     return model, n // 2
 
 
-def von_mises_truss(rise: float = 1.0, scale: float = 1.0) -> tuple[Model, int]:
+def von_mises_truss(rise: float = 1.0, scale: float = 1.0) -> tuple[ct.Model, int]:
     """Two bars of half span 10 and EA = 1000 under a force on the apex."""
     points = scale * np.array([[0.0, 0.0], [10.0, rise], [20.0, 0.0]])
-    model = Model(polyline(points))
-    model.truss([0, 1], material=Elastic(E=1000.0 / scale**2), area=scale**2)
+    model = ct.Model(polyline(points))
+    model.truss([0, 1], material=ct.Elastic(E=1000.0 / scale**2), area=scale**2)
     model.fix([0, 2])
     model.force([1], y=-1.0)
     return model, 1

@@ -9,14 +9,8 @@ from typing import Literal
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.mesh import EDGES, Mesh
-from corota.model.contact import RigidCurve
-from corota.model.loads import Fixed
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
+from corota.mesh import EDGES
 from corota.verification.models import DRILLING, cell
 
 #: Hertz's cylinder: radius, modulus, Poisson's ratio, force a unit of thickness.
@@ -25,7 +19,9 @@ RADIUS, YOUNG, NU, FORCE = 8.0, 200.0, 0.3, 10.0
 DIE, DOWN, ACROSS = 1.5, 0.3, 4.0
 
 
-def quarter(radius: float, n: int, element: str, growth: float = 1.5, upper: bool = False) -> Mesh:
+def quarter(
+    radius: float, n: int, element: str, growth: float = 1.5, upper: bool = False
+) -> ct.Mesh:
     """Right quarter of a disc about the origin, lower or upper, `n` cells along its sides.
 
     Cells grow away from the lowest (highest) point, with the power `growth` along the arc.
@@ -56,10 +52,10 @@ def quarter(radius: float, n: int, element: str, growth: float = 1.5, upper: boo
             flat,
             lambda t: (0.0, radius * (t**power - 1.0)),
         ]
-    return with_middles(meshes.mapped(sides, n, n, cell(element)), radius)
+    return with_middles(ct.mesh.mapped(sides, n, n, cell(element)), radius)
 
 
-def with_middles(mesh: Mesh, radius: float) -> Mesh:
+def with_middles(mesh: ct.Mesh, radius: float) -> ct.Mesh:
     """The mesh with the outer side nodes in the middle of their sides, which grow with a power.
 
     Those on the axes and on the circle of a radius about the origin.
@@ -82,15 +78,15 @@ def with_middles(mesh: Mesh, radius: float) -> Mesh:
 
 def cylinder(
     plane: Literal["stress", "strain"], n: int = 24, element: str = "Q4I", unit: float = 1.0
-) -> Model:
+) -> ct.Model:
     """Build the quarter disc; `n` cells along its sides, `unit` the size of the length unit."""
     R = RADIUS / unit
-    model = Model(quarter(R, n, element), name="hertz")
-    material = Elastic(E=YOUNG * unit**2, nu=NU)
+    model = ct.Model(quarter(R, n, element), name="hertz")
+    material = ct.Elastic(E=YOUNG * unit**2, nu=NU)
     model.section("all", element=element, material=material, plane=plane, thickness=1.0 / unit)
     model.fix("left", y=None, rotation=element in DRILLING)
     # The cylinder lies to the left of the direction of the line: above it.
-    floor = RigidCurve.line((-0.5 * R, -R), (0.5 * R, -R))
+    floor = ct.RigidCurve.line((-0.5 * R, -R), (0.5 * R, -R))
     model.contact("bottom", floor)
     model.traction("top", y=-0.5 * FORCE * unit / R)
     return model
@@ -103,7 +99,7 @@ def theory(plane: str) -> tuple[float, float]:
     return a, 2.0 * FORCE / (math.pi * a)
 
 
-def measured(results: Results, unit: float = 1.0) -> tuple[float, float]:
+def measured(results: ct.Results, unit: float = 1.0) -> tuple[float, float]:
     """Half width from the second moment of the pressure, F a^2 / 4, and greatest pressure."""
     mesh = results.mesh
     nodes = mesh.nodes_of("bottom")
@@ -115,7 +111,9 @@ def measured(results: Results, unit: float = 1.0) -> tuple[float, float]:
     return a * unit, math.sqrt(top) / unit**2
 
 
-def ironing(friction: float = 0.0, n: int = 12, element: str = "Q4I", unit: float = 1.0) -> Model:
+def ironing(
+    friction: float = 0.0, n: int = 12, element: str = "Q4I", unit: float = 1.0
+) -> ct.Model:
     """Build block and die; `n` cells across the die, `unit` the size of the length unit."""
     size = 1.0 / unit
     half = math.radians(60.0)
@@ -126,7 +124,7 @@ def ironing(friction: float = 0.0, n: int = 12, element: str = "Q4I", unit: floa
 
     (left, low), (right, _) = arc(0.0), arc(1.0)
     high = 4.5 * size
-    die = meshes.mapped(
+    die = ct.mesh.mapped(
         [
             arc,
             lambda t: (right, low + (high - low) * t),
@@ -136,9 +134,9 @@ def ironing(friction: float = 0.0, n: int = 12, element: str = "Q4I", unit: floa
         n,
         n // 2,
     )
-    block = meshes.rectangle(9.0 * size, 3.0 * size, nx=4 * n, ny=n)
-    model = Model(meshes.assembly(block=block, die=die), name="ironing")
-    soft, hard = (Elastic(E=E * unit**2, nu=0.3) for E in (1.0, 10.0))
+    block = ct.mesh.rectangle(9.0 * size, 3.0 * size, nx=4 * n, ny=n)
+    model = ct.Model(ct.mesh.assembly(block=block, die=die), name="ironing")
+    soft, hard = (ct.Elastic(E=E * unit**2, nu=0.3) for E in (1.0, 10.0))
     model.section(
         "block",
         element=element,
@@ -160,15 +158,15 @@ def ironing(friction: float = 0.0, n: int = 12, element: str = "Q4I", unit: floa
     return model
 
 
-def steps(unit: float = 1.0) -> list[Static]:
+def steps(unit: float = 1.0) -> list[ct.Static]:
     """Down, then across."""
 
-    def top(x: float, y: float) -> list[Fixed]:
-        return [Fixed("die.top", 0, x / unit), Fixed("die.top", 1, y / unit)]
+    def top(x: float, y: float) -> list[ct.Fixed]:
+        return [ct.Fixed("die.top", 0, x / unit), ct.Fixed("die.top", 1, y / unit)]
 
     return [
-        Static(first_increment=0.25, supports=top(0.0, -DOWN), name="down"),
-        Static(first_increment=0.05, supports=top(ACROSS, -DOWN), name="across"),
+        ct.Static(first_increment=0.25, supports=top(0.0, -DOWN), name="down"),
+        ct.Static(first_increment=0.05, supports=top(ACROSS, -DOWN), name="across"),
     ]
 
 

@@ -9,14 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.analysis.run import solve
-from corota.model.contact import RigidCurve
-from corota.model.materials import Elastic, Material
-from corota.model.model import Model
-from corota.model.plasticity import Mises
-from corota.model.steps import Dynamic
-from corota.results.results import Results
+import corota as ct
+from corota.model.materials import Material
 from corota.verification.models import cell
 
 #: The elastic bar: length, modulus, density, speed, and the speed of its waves.
@@ -56,20 +50,20 @@ class Impact:
     history: np.ndarray
 
 
-def bar(element: str = "Q4I", cells: int = 200, unit: float = 1.0, **contact: Any) -> Model:
+def bar(element: str = "Q4I", cells: int = 200, unit: float = 1.0, **contact: Any) -> ct.Model:
     """Build the bar, just touching the wall x = 0, on its way into it.
 
     `unit` is one meter in the unit of length; masses stay, so stresses scale with 1 / unit.
     """
     length = LENGTH * unit
     height = length / cells * 2.0
-    mesh = meshes.rectangle(length, height, nx=cells, ny=1, cell=cell(element))
-    model = Model(mesh, name="bar")
-    material = Elastic(E=YOUNG / unit, nu=0.0, rho=DENSITY / unit**3)
+    mesh = ct.mesh.rectangle(length, height, nx=cells, ny=1, cell=cell(element))
+    model = ct.Model(mesh, name="bar")
+    material = ct.Elastic(E=YOUNG / unit, nu=0.0, rho=DENSITY / unit**3)
     model.section("all", element=element, material=material, thickness=unit**2 / height)
     model.fix("bottom", x=None)
     model.velocity(x=-SPEED * unit)
-    wall = RigidCurve.line((0.0, unit + height), (0.0, -unit))
+    wall = ct.RigidCurve.line((0.0, unit + height), (0.0, -unit))
     model.contact("left", wall, name="wall", **contact)
     return model
 
@@ -83,13 +77,13 @@ def run_bar(
     step: float = 0.5,
     unit: float = 1.0,
     **contact: Any,
-) -> Results:
+) -> ct.Results:
     """Run the impact; `step` is the increment over the time of a wave through a cell, or 0.
 
     Contact with mass creates energy, which is the purpose of the run: there is no warning.
     """
     period = 2.6 * LENGTH / WAVE
-    dynamic = Dynamic(
+    dynamic = ct.Dynamic(
         period=period,
         increments=round(period / (step * LENGTH / cells / WAVE)) if step else 0,
         scheme=scheme,
@@ -98,7 +92,7 @@ def run_bar(
     )
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "energy balance")
-        return solve(bar(element, cells, unit, **contact), dynamic, fields=False)
+        return ct.solve(bar(element, cells, unit, **contact), dynamic, fields=False)
 
 
 def strike(element: str = "Q4I", scheme: str = "hht", **options: Any) -> Impact:
@@ -159,7 +153,7 @@ class Flight:
     released: float
     iterations: float
     history: dict[str, np.ndarray] = field(default_factory=dict)
-    results: Results | None = None
+    results: ct.Results | None = None
 
 
 def ring(
@@ -175,7 +169,7 @@ def ring(
     local_strain: Any = "green_lagrange",
     body: str = "ring",
     **contact: Any,
-) -> Model:
+) -> ct.Model:
     """Build the ring, or a bar upright, nearly touching the wall y = 0.
 
     `around` counts the elements along the ring or bar; `sideways` and `spin` are velocities along
@@ -184,12 +178,12 @@ def ring(
     """
     if body == "bar":
         # 1 x 0.2, standing on the wall; it bulges at the foot like a Taylor bar.
-        mesh = meshes.rectangle(
+        mesh = ct.mesh.rectangle(
             0.2 * unit, RADIUS * unit, nx=through, ny=around, cell=cell(element)
         )
-        mesh = meshes.move(mesh, (-0.1 * unit, 0.001 * RADIUS * unit))
+        mesh = ct.mesh.move(mesh, (-0.1 * unit, 0.001 * RADIUS * unit))
     else:
-        mesh = meshes.annulus(
+        mesh = ct.mesh.annulus(
             (RADIUS - DEPTH) * unit,
             RADIUS * unit,
             n_radial=through,
@@ -197,11 +191,11 @@ def ring(
             cell=cell(element),
             center=(0.0, 1.001 * RADIUS * unit),
         )
-    model = Model(mesh, name=body)
+    model = ct.Model(mesh, name=body)
     stress, density = 1.0 / unit, DENSITY / unit**3
-    material: Material = Elastic(E=RING_YOUNG * stress, nu=0.3, rho=density)
+    material: Material = ct.Elastic(E=RING_YOUNG * stress, nu=0.3, rho=density)
     if plastic:
-        material = Mises(
+        material = ct.Mises(
             E=RING_YOUNG * stress,
             nu=0.3,
             rho=density,
@@ -214,7 +208,7 @@ def ring(
     center = (0.0, 1.001 * RADIUS * unit)
     model.velocity(x=sideways * unit, y=-speed * unit, spin=spin, about=center)
     # The body lies to the left of the line, above it.
-    wall = RigidCurve.line((-3.0 * unit, 0.0), (3.0 * unit, 0.0))
+    wall = ct.RigidCurve.line((-3.0 * unit, 0.0), (3.0 * unit, 0.0))
     model.contact("outer" if body == "ring" else "bottom", wall, name="wall", **contact)
     return model
 
@@ -232,7 +226,7 @@ def run_ring(
     redistribute: bool = True,
     tolerance: float = 5e-3,
     **options: Any,
-) -> Results:
+) -> ct.Results:
     """Run the impact; 0 increments for automatic ones, other options as for :func:`ring`."""
     model = ring(
         element,
@@ -242,7 +236,7 @@ def run_ring(
         local_strain="linear" if plastic else "green_lagrange",
         **options,
     )
-    step = Dynamic(
+    step = ct.Dynamic(
         period=period,
         increments=increments,
         first_increment=2e-3,
@@ -251,7 +245,7 @@ def run_ring(
         mass=mass_kind,
         redistribute=redistribute,
     )
-    return solve(model, step)
+    return ct.solve(model, step)
 
 
 def fly(
@@ -307,7 +301,7 @@ def fly(
     )
 
 
-def mass_of(results: Results) -> float:
+def mass_of(results: ct.Results) -> float:
     """Mass of the ring from the volume of its quadrature points."""
     return body_of(results, 0)[0]
 
@@ -352,7 +346,7 @@ class Budget:
     history: dict[str, np.ndarray]
 
 
-def body_of(results: Results, frame: int) -> tuple[float, np.ndarray, float]:
+def body_of(results: ct.Results, frame: int) -> tuple[float, np.ndarray, float]:
     """Mass, center of mass and inertia about it in a frame."""
     rho = results.model.sections[0].material.rho
     fields = results.frames[frame].fields
@@ -363,7 +357,7 @@ def body_of(results: Results, frame: int) -> tuple[float, np.ndarray, float]:
     return mass, center, float(weight @ ((x - center) ** 2).sum(axis=1))
 
 
-def budget(results: Results) -> Budget:
+def budget(results: ct.Results) -> Budget:
     """Balance of momenta and energies of an elastic ring against the wall."""
     frames, mesh = results.frames, results.mesh
     value = {n: np.array([f.scalars[n] for f in frames[1:]]) for n in frames[-1].scalars}

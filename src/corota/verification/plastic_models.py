@@ -7,21 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.model import Model
-from corota.model.plasticity import Mises
+import corota as ct
 from corota.verification.models import DRILLING, ELEMENTS, cell
 
 if TYPE_CHECKING:
     from corota.arrays import Ints
-    from corota.mesh import Mesh
     from corota.model.materials import Material
 
 #: Cell kind that each element needs.
 CELL: dict[str, Any] = {name: cell(name) for name in ELEMENTS}
 
 
-def find(mesh: Mesh, axis: int, value: float) -> Ints:
+def find(mesh: ct.Mesh, axis: int, value: float) -> Ints:
     """Nodes with a coordinate."""
     size = float(np.ptp(mesh.points, axis=0).max())
     return np.flatnonzero(np.abs(mesh.points[:, axis] - value) < 1e-9 * size)
@@ -39,7 +36,7 @@ def _line(a: tuple[float, float], b: tuple[float, float]) -> Any:
     return lambda t: (a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t)
 
 
-def strip_mesh(n: int, cell: Any, width: float = 10.0, height: float = 18.0) -> Mesh:
+def strip_mesh(n: int, cell: Any, width: float = 10.0, height: float = 18.0) -> ct.Mesh:
     """Quarter of a strip with a hole of half its width: `n` cells along each side of the hole.
 
     Parameters
@@ -52,22 +49,22 @@ def strip_mesh(n: int, cell: Any, width: float = 10.0, height: float = 18.0) -> 
     """
     r, w = 0.5 * width, width
     middle = (r / np.sqrt(2.0), r / np.sqrt(2.0))
-    lower = meshes.mapped(
+    lower = ct.mesh.mapped(
         [_line((r, 0), (w, 0)), _line((w, 0), (w, w)), _line(middle, (w, w)), _arc(0, 45, r)],
         n,
         n,
         cell,
     )
-    upper = meshes.mapped(
+    upper = ct.mesh.mapped(
         [_line(middle, (w, w)), _line((w, w), (0, w)), _line((0, r), (0, w)), _arc(45, 90, r)],
         n,
         n,
         cell,
     )
-    rest = meshes.rectangle(
+    rest = ct.mesh.rectangle(
         w, height - w, n, max(1, round(n * (height - w) / w)), cell, origin=(0.0, w)
     )
-    return meshes.merge(lower, upper, rest)
+    return ct.mesh.merge(lower, upper, rest)
 
 
 def perforated_strip(
@@ -77,13 +74,13 @@ def perforated_strip(
     pull: float = 0.3,
     local_strain: Any = "linear",
     thickness: float = 0.01,
-) -> Model:
+) -> ct.Model:
     """Quarter strip 10 x 18 with a hole of radius 5, its top moved by `pull`.
 
     Aluminium with linear hardening (E 70000, nu 0.2, yield stress 243, slope 2240).
     """
-    model = Model(strip_mesh(n, CELL[element]))
-    material = material or Mises(E=70000.0, nu=0.2, yield_stress=243.0, isotropic=2240.0)
+    model = ct.Model(strip_mesh(n, CELL[element]))
+    material = material or ct.Mises(E=70000.0, nu=0.2, yield_stress=243.0, isotropic=2240.0)
     model.section(
         "all", element=element, material=material, thickness=thickness, local_strain=local_strain
     )
@@ -102,14 +99,14 @@ def notched_strip(
     local_strain: Any = "logarithmic",
     material: Material | None = None,
     mean_dilatation: bool = False,
-) -> Model:
+) -> ct.Model:
     """Quarter strip 10 x 18 in plane strain with a round notch of radius 5 on either side.
 
     Steel that hardens by less than its stress (E 200000, nu 0.3, yield stress 250, slope 150);
     `elongation` is the displacement of the top over the height.
     """
-    model = Model(strip_mesh(n, CELL[element]))
-    material = material or Mises(E=200e3, nu=0.3, yield_stress=250.0, isotropic=150.0)
+    model = ct.Model(strip_mesh(n, CELL[element]))
+    material = material or ct.Mises(E=200e3, nu=0.3, yield_stress=250.0, isotropic=150.0)
     model.section(
         "all",
         element=element,
@@ -132,14 +129,14 @@ def cook(
     force: float = 1.8,
     local_strain: Any = "linear",
     material: Material | None = None,
-) -> Model:
+) -> ct.Model:
     """Cook's tapered panel, clamped left, with a shear force on the right (plane stress).
 
     E 70, nu 1/3, yield stress 0.243, linear hardening 0.135 (kN, mm).
     """
     shape = [(0, 0), (48, 44), (48, 60), (0, 44)]
-    model = Model(meshes.mapped(shape, n, n, CELL[element]))
-    material = material or Mises(E=70.0, nu=1.0 / 3.0, yield_stress=0.243, isotropic=0.135)
+    model = ct.Model(ct.mesh.mapped(shape, n, n, CELL[element]))
+    material = material or ct.Mises(E=70.0, nu=1.0 / 3.0, yield_stress=0.243, isotropic=0.135)
     model.section("all", element=element, material=material, local_strain=local_strain)
     model.fix("left", rotation=True if element in DRILLING else None)
     model.traction("right", y=force / 16.0)
@@ -153,14 +150,14 @@ def cantilever(
     local_strain: Any = "linear",
     length: float = 10.0,
     aspect: float = 1.0,
-) -> Model:
+) -> ct.Model:
     """Perfectly plastic cantilever `length` x 1, its end moved down by `move`.
 
     E 1000, nu 0.3, yield stress 1; the limit load of beam theory is ``1 / (4 length)``.
     """
     nx = max(1, round(ny * length / aspect))
-    model = Model(meshes.rectangle(length, 1.0, nx, ny, CELL[element]))
-    law = Mises(E=1000.0, nu=0.3, yield_stress=1.0)
+    model = ct.Model(ct.mesh.rectangle(length, 1.0, nx, ny, CELL[element]))
+    law = ct.Mises(E=1000.0, nu=0.3, yield_stress=1.0)
     model.section("all", element=element, material=law, local_strain=local_strain)
     model.fix("left", rotation=True if element in DRILLING else None)
     model.fix("right", x=None, y=-move)
@@ -173,15 +170,15 @@ def notched(
     pull: float,
     material: Material | None = None,
     mean_dilatation: bool = False,
-) -> Model:
+) -> ct.Model:
     """Quarter of a deep double-notched tension specimen in plane strain, perfectly plastic.
 
     Half width 10, half ligament 1, half height 15. The limit load is ``(2 + pi) / sqrt(3)`` times
     the yield stress on the ligament (Nagtegaal, Parks & Rice 1974).
     """
     shape = strip_of_notch(n, CELL[element])
-    model = Model(shape)
-    law = material or Mises(E=206900.0, nu=0.29, yield_stress=450.0)
+    model = ct.Model(shape)
+    law = material or ct.Mises(E=206900.0, nu=0.29, yield_stress=450.0)
     model.section(
         "all", element=element, material=law, plane="strain", mean_dilatation=mean_dilatation
     )
@@ -194,13 +191,13 @@ def notched(
     return model
 
 
-def strip_of_notch(n: int, cell: Any) -> Mesh:
+def strip_of_notch(n: int, cell: Any) -> ct.Mesh:
     """Quarter of the notched specimen, graded towards the ligament."""
     near = np.linspace(0.0, 1.0, n + 1)
     grow = 1.0 + np.cumsum(np.geomspace(1.0 / n, 3.0, 2 * n))
     xs = np.concatenate([near, 1.0 + (grow - 1.0) * 9.0 / (grow[-1] - 1.0)])
     ys = np.concatenate([near, 1.0 + (grow - 1.0) * 14.0 / (grow[-1] - 1.0)])
-    unit = meshes.rectangle(1.0, 1.0, len(xs) - 1, len(ys) - 1, cell)
+    unit = ct.mesh.rectangle(1.0, 1.0, len(xs) - 1, len(ys) - 1, cell)
     at = np.linspace(0.0, 1.0, len(xs)), np.linspace(0.0, 1.0, len(ys))
     unit.points[:, 0] = np.interp(unit.points[:, 0], at[0], xs)
     unit.points[:, 1] = np.interp(unit.points[:, 1], at[1], ys)

@@ -12,11 +12,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota import mesh as meshes
+import corota as ct
 from corota.model import elements
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Frequency
 from corota.verification.catalogue import Problem, Value
 from corota.verification.models import cell, run
 
@@ -28,12 +25,12 @@ MESHES = {"Q8R": (60, 1), "Q8": (60, 1), "Q4I": (120, 2), "Q4D": (120, 2), "OPT"
 def numbers(element: str, clamped: bool) -> tuple[np.ndarray, float]:
     """Numbers beta L of the bending modes, and the largest rigid frequency over the first."""
     nx, ny = MESHES[element]
-    model = Model(meshes.rectangle(10.0, 0.1, nx=nx, ny=ny, cell=cell(element)))
-    model.section("all", element=element, material=Elastic(E=1e6, nu=0.0, rho=1.0))
+    model = ct.Model(ct.mesh.rectangle(10.0, 0.1, nx=nx, ny=ny, cell=cell(element)))
+    model.section("all", element=element, material=ct.Elastic(E=1e6, nu=0.0, rho=1.0))
     if clamped:
         model.fix("left", rotation=True)
     rigid = 0 if clamped else 3
-    found = run(model, Frequency(modes=3 + rigid)).modes[-1].factors
+    found = run(model, ct.Frequency(modes=3 + rigid)).modes[-1].factors
     scale = 2.0 * np.pi * 100.0 / np.sqrt(1e6 * 0.01 / 12.0)
     first = float(found[:rigid].max() / found[rigid]) if rigid else 0.0
     return np.sqrt(scale * found[rigid:]), first

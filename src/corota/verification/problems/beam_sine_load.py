@@ -15,12 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
+import corota as ct
 from corota.model import elements
-from corota.model.loads import Amplitude, NodalForce
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Dynamic, Frequency, ModalDynamic
 from corota.verification.beam_models import polyline
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import nearest, run
@@ -30,23 +26,23 @@ PERIOD = 0.4
 CASES = [("BEAM", "newmark"), ("BEAM", "modal"), ("Q8", "newmark"), ("Q8", "modal")]
 
 
-def beam(element: str, speed: float) -> tuple[Model, int]:
+def beam(element: str, speed: float) -> tuple[ct.Model, int]:
     """The beam; with the node in its middle."""
-    material = Elastic(E=YOUNG, nu=0.0, rho=DENSITY)
+    material = ct.Elastic(E=YOUNG, nu=0.0, rho=DENSITY)
     if elements.find(element).line:
         points = np.linspace([0.0, 0.0], [LENGTH, 0.0], 41)
-        model = Model(polyline(points))
+        model = ct.Model(polyline(points))
         inertia = WIDTH * DEPTH**3 / 12.0
         model.beam(np.arange(40), material=material, area=WIDTH * DEPTH, inertia=inertia)
     else:
-        mesh = meshes.rectangle(LENGTH, DEPTH, 40, 1, "quad8", origin=(0.0, -0.5 * DEPTH))
-        model = Model(mesh)
+        mesh = ct.mesh.rectangle(LENGTH, DEPTH, 40, 1, "quad8", origin=(0.0, -0.5 * DEPTH))
+        model = ct.Model(mesh)
         model.section("all", element=element, material=material, thickness=WIDTH)
     points = model.mesh.points
     model.fix([nearest(model.mesh, 0.0, 0.0)])
     model.fix([nearest(model.mesh, LENGTH, 0.0)], x=None)
     time = np.linspace(0.0, PERIOD, 4001)
-    model.amplitudes["sine"] = Amplitude(time, np.sin(speed * time))
+    model.amplitudes["sine"] = ct.Amplitude(time, np.sin(speed * time))
     middle = int(np.argmin(np.hypot(points[:, 0] - 0.5 * LENGTH, points[:, 1] + 0.5 * DEPTH)))
     return model, middle
 
@@ -59,11 +55,11 @@ def moved(element: str, way: str, speed: float, increments: int = 800) -> tuple[
         "period": PERIOD,
         "increments": increments,
         "nlgeom": False,
-        "loads": [NodalForce(np.array([middle]), 1, FORCE, "sine")],
+        "loads": [ct.NodalForce(np.array([middle]), 1, FORCE, "sine")],
     }
-    steps: Any = Dynamic(scheme="newmark", **keys)
+    steps: Any = ct.Dynamic(scheme="newmark", **keys)
     if way == "modal":
-        steps = [Frequency(modes=12, nlgeom=False), ModalDynamic(**keys)]
+        steps = [ct.Frequency(modes=12, nlgeom=False), ct.ModalDynamic(**keys)]
     results = run(model, steps)
     last = results.frames[-1].step
     frames = [f for f in results.frames if f.step == last and f.increment > 0]

@@ -11,9 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
+import corota as ct
 from corota.verification.catalogue import Problem, Value
 from corota.verification.models import DRILLING, assemble, cell
 
@@ -28,10 +26,10 @@ ROWS = {
 
 def ratio(element: str, a: float, b: float) -> float:
     """Energy of one rectangle a x b in pure bending over the exact one."""
-    mesh = meshes.rectangle(a, b, 1, 1, cell(element), "right", origin=(-a / 2, -b / 2))
+    mesh = ct.mesh.rectangle(a, b, 1, 1, cell(element), "right", origin=(-a / 2, -b / 2))
     E, kappa = 1000.0, 0.01
-    model = Model(mesh)
-    model.section("all", element=element, material=Elastic(E=E, nu=0.3))
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=E, nu=0.3))
     x, y = mesh.points.T
     columns = [kappa * x * y, -0.5 * kappa * (x**2 - 0.25 * a**2)]
     if element in DRILLING:

@@ -14,11 +14,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import cell, prescribe, run
 
@@ -26,17 +22,17 @@ SHEAR = 0.1
 ASPECTS = (1.0, 4.0, 16.0)
 
 
-def sheared(element: str, aspect: float) -> Results:
+def sheared(element: str, aspect: float) -> ct.Results:
     """One rectangle, every node of it moved."""
-    mesh = meshes.rectangle(aspect, 1.0, 1, 1, cell(element))
-    model = Model(mesh)
-    model.section("all", element=element, material=Elastic(E=1.0, nu=0.0))
+    mesh = ct.mesh.rectangle(aspect, 1.0, 1, 1, cell(element))
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=1.0, nu=0.0))
     u = np.stack([SHEAR * mesh.points[:, 1], np.zeros(mesh.n_nodes)], axis=1)
     prescribe(model, np.arange(mesh.n_nodes), u)
-    return run(model, Static(increments=1), fields=True)
+    return run(model, ct.Static(increments=1), fields=True)
 
 
-def frame(results: Results) -> tuple[float, float]:
+def frame(results: ct.Results) -> tuple[float, float]:
     """Rotation of the frame, and the strain across in its axes."""
     fields = results.frames[-1].fields[0]
     angle = float(fields.frame_rotation[0])

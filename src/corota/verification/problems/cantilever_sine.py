@@ -15,11 +15,7 @@ from functools import cache
 
 import numpy as np
 
-from corota.model.loads import Amplitude
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Dynamic
-from corota.results.results import Results
+import corota as ct
 from corota.verification.beam_models import polyline
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import run
@@ -41,20 +37,20 @@ from corota.verification.motion_models import (
 @cache
 def beams(n: int = 60, increments: int = 960) -> np.ndarray:
     """Displacement of the end at 30 equal times by `n` beams, shape (30, 2) [m]."""
-    model = Model(polyline(np.linspace([0.0, 0.0], [LENGTH, 0.0], n + 1)))
+    model = ct.Model(polyline(np.linspace([0.0, 0.0], [LENGTH, 0.0], n + 1)))
     area = WIDTH * DEPTH
     model.beam(
         np.arange(n),
-        material=Elastic(E=YOUNG, nu=POISSON, rho=DENSITY),
+        material=ct.Elastic(E=YOUNG, nu=POISSON, rho=DENSITY),
         area=area,
         inertia=WIDTH * DEPTH**3 / 12.0,
         shear_area=area * 5.0 / 6.0,
     )
     model.fix([0], rotation=True)
     time = np.linspace(0.0, PERIOD, 1501)
-    model.amplitudes["sine"] = Amplitude(time, np.sin(OMEGA * time))
+    model.amplitudes["sine"] = ct.Amplitude(time, np.sin(OMEGA * time))
     model.force([n], y=FORCE, amplitude="sine")
-    step = Dynamic(period=PERIOD, increments=increments, scheme="energy_momentum")
+    step = ct.Dynamic(period=PERIOD, increments=increments, scheme="energy_momentum")
     every = increments // 30
     return np.array([f.U[n] for f in run(model, step).frames[every::every]])
 
@@ -89,10 +85,10 @@ def measure() -> Iterator[Value]:
 def picture() -> Picture:
     """The cantilever at its largest deflection."""
     model, tip = sine_cantilever("Q8", 32)
-    step = Dynamic(period=PERIOD, increments=480, scheme="energy_momentum")
+    step = ct.Dynamic(period=PERIOD, increments=480, scheme="energy_momentum")
     results = run(model, step, fields=True)
     k = int(np.argmax([abs(f.U[tip, 1]) for f in results.frames]))
-    return Picture(Results(model, results.frames[: k + 1]), "S11")
+    return Picture(ct.Results(model, results.frames[: k + 1]), "S11")
 
 
 def curve() -> Curve:

@@ -14,13 +14,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.mesh import Cells, Mesh
-from corota.model.loads import EdgeLoad
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import DRILLING, ELEMENTS, boundary, cell, prescribe, run
 
@@ -33,35 +27,35 @@ STRESS = np.array([4000 / 3, 4000 / 3, 0.0, 400.0])
 SIDES = {(0, -1): (1, 0.0), (1, 0): (0, 0.24), (0, 1): (1, 0.12), (-1, 0): (0, 0.0)}
 
 
-def patch(element: str) -> Mesh:
+def patch(element: str) -> ct.Mesh:
     """The five cells, as squares or triangles, with middle nodes where wanted."""
-    mesh = Mesh(POINTS, [Cells("quad4", QUADS, np.arange(1, 6))])
+    mesh = ct.Mesh(POINTS, [ct.Cells("quad4", QUADS, np.arange(1, 6))])
     kind = cell(element)
     if kind.startswith("tri"):
-        mesh = meshes.to_triangles(mesh)
+        mesh = ct.mesh.to_triangles(mesh)
     if kind in ("tri6", "quad8", "quad9"):
-        mesh = meshes.to_quadratic(mesh, center=kind == "quad9")
+        mesh = ct.mesh.to_quadratic(mesh, center=kind == "quad9")
     return mesh
 
 
-def _model(element: str) -> Model:
-    model = Model(patch(element))
-    material = Elastic(E=1e6, nu=0.25)
+def _model(element: str) -> ct.Model:
+    model = ct.Model(patch(element))
+    material = ct.Elastic(E=1e6, nu=0.25)
     model.section("all", element=element, material=material, thickness=0.001)
     return model
 
 
-def moved(element: str) -> Results:
+def moved(element: str) -> ct.Results:
     """The patch with all of its boundary moved."""
     model = _model(element)
     x, y = model.mesh.points.T
     u = 1e-3 * np.stack([x + y / 2, y + x / 2], axis=1)
     edge = boundary(model.mesh)
     prescribe(model, edge, u[edge], 0.0 if element in DRILLING else None)
-    return run(model, Static(nlgeom=False), fields=True)
+    return run(model, ct.Static(nlgeom=False), fields=True)
 
 
-def pulled(element: str) -> Results:
+def pulled(element: str) -> ct.Results:
     """The patch under its edge tractions, supported against rigid motion only."""
     model = _model(element)
     mesh, edges = model.mesh, model.mesh.boundary_edges()
@@ -70,13 +64,13 @@ def pulled(element: str) -> Results:
     for normal, (axis, place) in SIDES.items():
         mine = edges[np.abs(ends[:, axis] - place) < 1e-9]
         t = tensor @ normal
-        model.loads.append(EdgeLoad(mine, "traction", (float(t[0]), float(t[1]))))
+        model.loads.append(ct.EdgeLoad(mine, "traction", (float(t[0]), float(t[1]))))
     model.fix([0])
     model.fix([1], x=None, y=0.5e-3 * 0.24)
-    return run(model, Static(nlgeom=False), fields=True)
+    return run(model, ct.Static(nlgeom=False), fields=True)
 
 
-def stress_error(results: Results) -> float:
+def stress_error(results: ct.Results) -> float:
     """Largest error of the stress at the points over the largest stress."""
     worst = 0.0
     for block in results.frames[-1].fields:

@@ -13,23 +13,18 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.mesh import Mesh
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import ELEMENTS, cell, run
 
 YOUNG, POISSON, PRESSURE = 1000.0, 0.3, 5.0
 
 
-def blocks(low: str, up: str, angle: float = 0.0, overhang: float = 0.0) -> Mesh:
+def blocks(low: str, up: str, angle: float = 0.0, overhang: float = 0.0) -> ct.Mesh:
     """Two blocks on each other, the upper one narrower by `overhang` at both sides."""
-    a = meshes.rectangle(2.0, 1.0, 3, 2, cell(low))
-    b = meshes.rectangle(2.0 - 2.0 * overhang, 0.8, 4, 2, cell(up), origin=(overhang, 1.0))
-    return meshes.move(meshes.assembly(low=a, up=b), angle=angle)
+    a = ct.mesh.rectangle(2.0, 1.0, 3, 2, cell(low))
+    b = ct.mesh.rectangle(2.0 - 2.0 * overhang, 0.8, 4, 2, cell(up), origin=(overhang, 1.0))
+    return ct.mesh.move(ct.mesh.assembly(low=a, up=b), angle=angle)
 
 
 def axes(angle: float) -> np.ndarray:
@@ -38,7 +33,7 @@ def axes(angle: float) -> np.ndarray:
     return np.array([[c, -s], [s, c]])
 
 
-def hold(model: Model, angle: float) -> None:
+def hold(model: ct.Model, angle: float) -> None:
     """Supports that let both blocks strain freely: the bottom slides, one corner is fixed."""
     mesh, turn = model.mesh, axes(angle)
     for name in ("low.bottom", "up.top"):
@@ -61,10 +56,10 @@ def solved(
     nlgeom: bool = True,
     overhang: float = 0.0,
     **options: Any,
-) -> Results:
+) -> ct.Results:
     """The blocks under the pressure; `slave` is the one that the multipliers live on."""
-    model = Model(blocks(low, up, angle, overhang))
-    material = Elastic(E=YOUNG, nu=POISSON)
+    model = ct.Model(blocks(low, up, angle, overhang))
+    material = ct.Elastic(E=YOUNG, nu=POISSON)
     # A uniform strain is exact at large deformation with the strain of the true gradient only.
     strain: Any = "green_lagrange" if nlgeom else "linear"
     for name, element in (("low", low), ("up", up)):
@@ -81,10 +76,10 @@ def solved(
     model.traction("up.top", x=float(push[0]), y=float(push[1]))
     faces = ("up.bottom", "low.top") if slave == "up" else ("low.top", "up.bottom")
     model.contact(*faces, **options)
-    return run(model, Static(nlgeom=nlgeom), fields=True)
+    return run(model, ct.Static(nlgeom=nlgeom), fields=True)
 
 
-def stresses(results: Results, angle: float) -> np.ndarray:
+def stresses(results: ct.Results, angle: float) -> np.ndarray:
     """Stress at all points in the axes of the interface, shape (n, 3): along, across, shear."""
     s = np.concatenate([b.values["S"].reshape(-1, 4) for b in results.frames[-1].fields])
     full = np.array([[s[:, 0], s[:, 3]], [s[:, 3], s[:, 1]]])

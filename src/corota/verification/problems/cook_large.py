@@ -14,9 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from corota.model.loads import EdgeLoad
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import Watch, cook, last_frames, nearest, run
 
@@ -30,12 +28,12 @@ EXACT = {
 }
 
 
-def solved(element: str, n: int, watch: Watch | None = None, **keys: Any) -> Results:
+def solved(element: str, n: int, watch: Watch | None = None, **keys: Any) -> ct.Results:
     """One step a load."""
     model, _ = cook(element, n)
     model.loads.clear()
     steps: list[Any] = [
-        Static(loads=[EdgeLoad("right", "traction", (0.0, f / 16.0))], tolerance=1e-10)
+        ct.Static(loads=[ct.EdgeLoad("right", "traction", (0.0, f / 16.0))], tolerance=1e-10)
         for f in EXACT
     ]
     return run(model, steps, observers=[watch] if watch else [], **keys)

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import corota as ct
 from corota.model import elements
-from corota.model.steps import Static
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cook, linear, run
 
@@ -70,6 +70,6 @@ PROBLEM = Problem(
     certainty="computed independently",
     why="rows: the last printed digit; the converged value within the mesh error at a corner "
     "that is singular",
-    picture=lambda: Picture(run(cook("Q8", 8)[0], Static(nlgeom=False), fields=True)),
+    picture=lambda: Picture(run(cook("Q8", 8)[0], ct.Static(nlgeom=False), fields=True)),
     seconds=2.2,
 )

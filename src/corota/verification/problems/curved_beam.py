@@ -9,10 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cell, linear, run
 
@@ -29,10 +26,10 @@ MESHES = {
 }
 
 
-def model(element: str, across: int, around: int) -> Model:
+def model(element: str, across: int, around: int) -> ct.Model:
     """The beam under unit shear."""
-    made = Model(meshes.annulus(4.12, 4.32, across, around, angle=90.0, cell=cell(element)))
-    made.section("all", element=element, material=Elastic(E=1e7, nu=0.25), thickness=0.1)
+    made = ct.Model(ct.mesh.annulus(4.12, 4.32, across, around, angle=90.0, cell=cell(element)))
+    made.section("all", element=element, material=ct.Elastic(E=1e7, nu=0.25), thickness=0.1)
     made.fix("end", rotation=True)
     made.traction("start", x=1.0 / 0.02)
     return made
@@ -67,6 +64,6 @@ PROBLEM = Problem(
     "S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, section 33",
     certainty="analytic",
     why="clamps of elasticity and of the model differ by 0.1 %; the rest is mesh error",
-    picture=lambda: Picture(run(model("Q8", 2, 24), Static(nlgeom=False), fields=True), "SP1"),
+    picture=lambda: Picture(run(model("Q8", 2, 24), ct.Static(nlgeom=False), fields=True), "SP1"),
     seconds=0.1,
 )

@@ -14,9 +14,7 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
-from corota.model.paths import ArcLength
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.frame_models import deep_arch
 from corota.verification.models import run
@@ -27,11 +25,11 @@ FIRST, SECOND, PLACE = 897.28913, -73.055, (-61.14168, -113.73065)
 
 
 @cache
-def solved(element: str = "Q8", **keys: Any) -> tuple[Results, int]:
+def solved(element: str = "Q8", **keys: Any) -> tuple[ct.Results, int]:
     """Path to a deflection of 124; with the node of the crown."""
     model, crown = deep_arch(element, LOAD, cells=240)
-    path = ArcLength(displacement=(crown, "y", -124.0))
-    return run(model, Static(path=path), **keys), crown
+    path = ct.ArcLength(displacement=(crown, "y", -124.0))
+    return run(model, ct.Static(path=path), **keys), crown
 
 
 def measure() -> Iterator[Value]:

@@ -17,13 +17,8 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from corota import mesh as meshes
+import corota as ct
 from corota.model import elements
-from corota.model.loads import NodalForce
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
 from corota.verification.beam_models import polyline
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import last_frames, nearest, run
@@ -66,21 +61,21 @@ def elastica(load: float) -> tuple[float, float]:
     return along, across
 
 
-def frame(element: str, load: float = 0.0) -> tuple[Model, int, int]:
+def frame(element: str, load: float = 0.0) -> tuple[ct.Model, int, int]:
     """One bar, from the rigid corner on the left to the hinge; with both nodes.
 
     The line of the load is y; the rigid corner moves along x only, the hinge along y only.
     """
     if elements.find(element).line:
         way = np.linspace(0.0, 1.0, 61)[:, None]
-        model = Model(polyline(way * [HALF, HALF]))
-        material = Elastic(E=1e6, nu=0.0)
+        model = ct.Model(polyline(way * [HALF, HALF]))
+        material = ct.Elastic(E=1e6, nu=0.0)
         model.beam(np.arange(60), material=material, area=1.0, inertia=1e-6)
         corner, hinge = 0, 60
     else:
-        mesh = meshes.rectangle(1.0, DEPTH, 60, 1, "quad8", origin=(0.0, -0.5 * DEPTH))
-        model = Model(meshes.move(mesh, angle=45.0))
-        material = Elastic(E=12.0 / DEPTH**3, nu=0.0)
+        mesh = ct.mesh.rectangle(1.0, DEPTH, 60, 1, "quad8", origin=(0.0, -0.5 * DEPTH))
+        model = ct.Model(ct.mesh.move(mesh, angle=45.0))
+        material = ct.Elastic(E=12.0 / DEPTH**3, nu=0.0)
         model.section("all", element=element, material=material)
         corner, hinge = nearest(model.mesh, 0.0, 0.0), nearest(model.mesh, HALF, HALF)
     if elements.find(element).line:
@@ -99,11 +94,11 @@ def frame(element: str, load: float = 0.0) -> tuple[Model, int, int]:
 
 
 @cache
-def solved(element: str, sign: float, **keys: Any) -> tuple[Results, int, int]:
+def solved(element: str, sign: float, **keys: Any) -> tuple[ct.Results, int, int]:
     """A step for each load."""
     model, corner, hinge = frame(element)
     steps: list[Any] = [
-        Static(loads=[NodalForce(np.array([hinge]), 1, 0.5 * sign * p)], tolerance=1e-11)
+        ct.Static(loads=[ct.NodalForce(np.array([hinge]), 1, 0.5 * sign * p)], tolerance=1e-11)
         for p in LOADS
     ]
     return run(model, steps, **keys), corner, hinge

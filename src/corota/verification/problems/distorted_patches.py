@@ -14,12 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.mesh import Mesh
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import DRILLING, ELEMENTS, boundary, cell, prescribe, run
 
@@ -35,23 +30,23 @@ def moduli(plane: str) -> np.ndarray:
     return np.array([[c, c * d, 0.0], [c * d, c, 0.0], [0.0, 0.0, YOUNG / 2.0 / (1.0 + POISSON)]])
 
 
-def distorted(element: str, seed: int) -> Mesh:
+def distorted(element: str, seed: int) -> ct.Mesh:
     """One of the meshes."""
-    mesh = meshes.rectangle(3.0, 2.0, 3, 3, cell(element), "alternate")
-    return meshes.move(meshes.distort(mesh, 0.3, seed), shift=(1.0, -0.5), angle=7.0 * seed)
+    mesh = ct.mesh.rectangle(3.0, 2.0, 3, 3, cell(element), "alternate")
+    return ct.mesh.move(ct.mesh.distort(mesh, 0.3, seed), shift=(1.0, -0.5), angle=7.0 * seed)
 
 
-def solved(element: str, plane: Any, seed: int) -> tuple[Results, np.ndarray]:
+def solved(element: str, plane: Any, seed: int) -> tuple[ct.Results, np.ndarray]:
     """One mesh; with the gradient of its field."""
     mesh = distorted(element, seed)
     h = 1e-3 * np.random.default_rng(seed).uniform(-1.0, 1.0, (2, 2))
-    model = Model(mesh)
-    material = Elastic(E=YOUNG, nu=POISSON)
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=YOUNG, nu=POISSON)
     model.section("all", element=element, material=material, thickness=0.7, plane=plane)
     edge = boundary(mesh)
     skew = np.array(0.5 * (h[1, 0] - h[0, 1])) if element in DRILLING else None
     prescribe(model, edge, mesh.points[edge] @ h.T, skew)
-    return run(model, Static(nlgeom=False), fields=True), h
+    return run(model, ct.Static(nlgeom=False), fields=True), h
 
 
 def errors(element: str, plane: str, seed: int) -> tuple[float, float]:

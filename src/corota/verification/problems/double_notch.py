@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import run
 from corota.verification.plastic_models import find, notched
@@ -32,10 +31,10 @@ CASES = [
 
 def solved(
     element: str, mean: bool, n: int, pull: float, **keys: Any
-) -> tuple[Results, np.ndarray]:
+) -> tuple[ct.Results, np.ndarray]:
     """Path, and the mean stress on the ligament over the yield stress in each frame."""
     model = notched(element, n, pull, mean_dilatation=mean)
-    results = run(model, Static(nlgeom=False, increments=10), **keys)
+    results = run(model, ct.Static(nlgeom=False, increments=10), **keys)
     top = find(model.mesh, 1, 15.0)
     return results, np.array([f.RF[top, 1].sum() / 450.0 for f in results.frames])
 

@@ -12,9 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota.model.loads import EdgeLoad
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import Watch, cantilever, last_frames, run
 
@@ -48,20 +46,22 @@ MESHES = {
 }
 
 
-def solved(element: str, nx: int, ny: int, watch: Watch | None = None, **keys: object) -> Results:
+def solved(
+    element: str, nx: int, ny: int, watch: Watch | None = None, **keys: object
+) -> ct.Results:
     """One step with one increment for each load of the table."""
     model = cantilever(element, LENGTH, HEIGHT, nx, ny, E=YOUNG)
     unit = YOUNG * HEIGHT**2 / 12.0 / LENGTH**2
     steps: list[object] = [
-        Static(
-            loads=[EdgeLoad("right", "traction", (0.0, k * unit))], increments=1, tolerance=1e-12
+        ct.Static(
+            loads=[ct.EdgeLoad("right", "traction", (0.0, k * unit))], increments=1, tolerance=1e-12
         )
         for k, _, _ in EXACT
     ]
     return run(model, steps, observers=[watch] if watch else [], **keys)  # type: ignore[arg-type]
 
 
-def end(results: Results) -> np.ndarray:
+def end(results: ct.Results) -> np.ndarray:
     """Deflection and shortening of the middle of the end over the length, by load."""
     mesh = results.mesh
     tip = mesh.node_sets["right"]

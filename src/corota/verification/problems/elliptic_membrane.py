@@ -13,11 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import DRILLING, cell, nearest, run
 
@@ -44,7 +40,7 @@ def _line(a: tuple[float, float], b: tuple[float, float]) -> Any:
     return lambda t: (a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t)
 
 
-def solved(element: str, along: int, across: int) -> Results:
+def solved(element: str, along: int, across: int) -> ct.Results:
     """The membrane on `along` cells around and `across` from the inner to the outer edge."""
     sides = [
         _line((2.0, 0.0), (3.25, 0.0)),
@@ -52,13 +48,13 @@ def solved(element: str, along: int, across: int) -> Results:
         _line((0.0, 1.0), (0.0, 2.75)),
         _ellipse(2.0, 1.0),
     ]
-    model = Model(meshes.mapped(sides, across, along, cell(element)))
-    model.section("all", element=element, material=Elastic(E=210e9, nu=0.3), thickness=0.1)
+    model = ct.Model(ct.mesh.mapped(sides, across, along, cell(element)))
+    model.section("all", element=element, material=ct.Elastic(E=210e9, nu=0.3), thickness=0.1)
     turn = 0.0 if element in DRILLING else None
     model.fix("bottom", x=None, rotation=turn)
     model.fix("top", y=None, rotation=turn)
     model.pressure("right", -10e6)
-    return run(model, Static(nlgeom=False), fields=True)
+    return run(model, ct.Static(nlgeom=False), fields=True)
 
 
 def stress(element: str, along: int, across: int) -> float:

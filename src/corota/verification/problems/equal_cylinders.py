@@ -14,11 +14,7 @@ from functools import cache
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.contact_models import ellipse_of, quarter
 from corota.verification.models import DRILLING, run
@@ -30,22 +26,22 @@ GROWTH = 1.8
 
 
 @cache
-def solved(element: str, n: int) -> Results:
+def solved(element: str, n: int) -> ct.Results:
     """The upper disc with `n` elements per side, the lower one with a quarter fewer."""
-    up = meshes.move(quarter(R, n, element, GROWTH), shift=(0.0, R))
-    low = meshes.move(quarter(R, 3 * n // 4, element, GROWTH, upper=True), shift=(0.0, -R))
-    model = Model(meshes.assembly(up=up, low=low))
-    steel = Elastic(E=YOUNG, nu=NU)
+    up = ct.mesh.move(quarter(R, n, element, GROWTH), shift=(0.0, R))
+    low = ct.mesh.move(quarter(R, 3 * n // 4, element, GROWTH, upper=True), shift=(0.0, -R))
+    model = ct.Model(ct.mesh.assembly(up=up, low=low))
+    steel = ct.Elastic(E=YOUNG, nu=NU)
     model.section("all", element=element, material=steel, plane="strain")
     for name in ("up", "low"):
         model.fix(f"{name}.left", y=None, rotation=element in DRILLING)
     model.fix("low.bottom", x=None)
     model.contact("up.bottom", "low.top", name="pair")
     model.traction("up.top", y=-0.5 * LOAD / R)
-    return run(model, Static(nlgeom=False), fields=True)
+    return run(model, ct.Static(nlgeom=False), fields=True)
 
 
-def pressures(results: Results) -> tuple[np.ndarray, np.ndarray]:
+def pressures(results: ct.Results) -> tuple[np.ndarray, np.ndarray]:
     """Place and contact pressure of the nodes of the upper disc."""
     nodes = results.mesh.nodes_of("up.bottom")
     return results.mesh.points[nodes, 0], np.asarray(results.nodal("CPRESS")[nodes])

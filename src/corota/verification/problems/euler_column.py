@@ -16,9 +16,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from corota.model.paths import ArcLength
-from corota.model.steps import Buckle, Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.frame_models import column, euler_load
 from corota.verification.models import nearest, run
@@ -33,18 +31,18 @@ def elastica(load: float) -> tuple[float, float]:
 
 
 @cache
-def solved(side: Literal[1, -1] = 1, **keys: Any) -> tuple[Results, int]:
+def solved(side: Literal[1, -1] = 1, **keys: Any) -> tuple[ct.Results, int]:
     """Along the axis, through the bifurcation and off to one side; with the tip."""
     model = column("Q8", n=40)
     tip = nearest(model.mesh, 100.0, 1.0)
-    path = ArcLength(displacement=([tip], "y", 70.0 * side), switch=True, side=side)
-    return run(model, Static(path=path), **keys), tip
+    path = ct.ArcLength(displacement=([tip], "y", 70.0 * side), switch=True, side=side)
+    return run(model, ct.Static(path=path), **keys), tip
 
 
 def measure() -> Iterator[Value]:
     """Eigenvalues, the bifurcation and the last state of the branch."""
     for element, tolerance in ELEMENTS.items():
-        factors = run(column(element, n=80), Buckle(modes=3)).modes[0].factors
+        factors = run(column(element, n=80), ct.Buckle(modes=3)).modes[0].factors
         yield Value(f"buckling load, {element} 80 x 2", euler_load(), factors[0], tolerance)
         for k in (1, 2):
             yield Value(
@@ -55,7 +53,7 @@ def measure() -> Iterator[Value]:
             )
     results, tip = solved()
     critical = results.critical_points[0]
-    linear = run(column("Q8", n=40), Buckle()).modes[0].factors[0]
+    linear = run(column("Q8", n=40), ct.Buckle()).modes[0].factors[0]
     yield Value("bifurcation on the path, against linear buckling", linear, critical.factor, 2e-4)
     last = results.frames[-1]
     deflection, shortening = elastica(last.factor / critical.factor)
@@ -94,7 +92,7 @@ def study() -> Study:
         ELEMENTS,
         (5, 10, 20, 40),
         lambda e, n: abs(
-            float(run(column(e, n=n), Buckle()).modes[0].factors[0]) / euler_load() - 1.0
+            float(run(column(e, n=n), ct.Buckle()).modes[0].factors[0]) / euler_load() - 1.0
         ),
         "cells along",
     )

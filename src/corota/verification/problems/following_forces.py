@@ -18,12 +18,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota import mesh as meshes
+import corota as ct
 from corota.mesh.data import Cells, Mesh
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.paths import Modes
-from corota.model.steps import Frequency, Static
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import cell, run
 
@@ -34,36 +30,36 @@ YOUNG, LENGTH, DEPTH = 1e4, 10.0, 0.25
 INERTIA = DEPTH**3 / 12.0
 
 
-def column(element: str, nx: int) -> Model:
+def column(element: str, nx: int) -> ct.Model:
     """A clamped column of slenderness 40."""
-    model = Model(meshes.rectangle(LENGTH, DEPTH, nx=nx, ny=1, cell=cell(element)))
-    model.section("all", element=element, material=Elastic(E=YOUNG, nu=0.0, rho=1.0))
+    model = ct.Model(ct.mesh.rectangle(LENGTH, DEPTH, nx=nx, ny=1, cell=cell(element)))
+    model.section("all", element=element, material=ct.Elastic(E=YOUNG, nu=0.0, rho=1.0))
     model.fix("left")
     return model
 
 
-def modes(model: Model, damped: bool = False) -> Modes:
+def modes(model: ct.Model, damped: bool = False) -> ct.Modes:
     """Modes of the loaded state, for the search of instabilities."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return run(model, [Static(), Frequency(modes=2, complex_modes=damped)]).modes[-1]
+        return run(model, [ct.Static(), ct.Frequency(modes=2, complex_modes=damped)]).modes[-1]
 
 
-def beck(load: float, element: str = "Q8", nx: int = 16) -> Modes:
+def beck(load: float, element: str = "Q8", nx: int = 16) -> ct.Modes:
     """A pressure on the end."""
     model = column(element, nx)
     model.pressure("right", load * YOUNG * INERTIA / LENGTH**2 / DEPTH)
     return modes(model)
 
 
-def dead(load: float) -> Modes:
+def dead(load: float) -> ct.Modes:
     """A force that keeps its direction."""
     model = column("Q8", 16)
     model.traction("right", x=-load * YOUNG * INERTIA / LENGTH**2 / DEPTH)
     return modes(model)
 
 
-def leipholz(load: float, nx: int = 32) -> Modes:
+def leipholz(load: float, nx: int = 32) -> ct.Modes:
     """A pressure on the cross-section behind each element, on the last of half the size."""
     model = column("Q8", nx)
     each = load * YOUNG * INERTIA / LENGTH**3 * (LENGTH / nx) / DEPTH
@@ -73,7 +69,7 @@ def leipholz(load: float, nx: int = 32) -> Modes:
     return modes(model)
 
 
-def ziegler(load: float, damping: float = 0.0) -> Modes:
+def ziegler(load: float, damping: float = 0.0) -> ct.Modes:
     """Two rigid bars of length 1, springs of 1, a small block at the end for the pressure."""
     h = 0.1
     block = [(2.0, -h / 2), (2.0 + h, -h / 2), (2.0 + h, h / 2), (2.0, h / 2)]
@@ -81,8 +77,8 @@ def ziegler(load: float, damping: float = 0.0) -> Modes:
     points = points if damping else points[:-1]
     bars = Cells("line2", np.array([[0, 1], [2, 3], [1, 2], [8, 0]]), np.arange(1, 5))
     quads = Cells("quad4", np.array([[4, 5, 6, 7]]), np.array([5]))
-    model = Model(Mesh(np.array(points), [bars, quads], np.arange(1, len(points) + 1)))
-    light = Elastic(E=1e6, nu=0.0, rho=1e-9)
+    model = ct.Model(Mesh(np.array(points), [bars, quads], np.arange(1, len(points) + 1)))
+    light = ct.Elastic(E=1e6, nu=0.0, rho=1e-9)
     model.beam([0, 1], material=light, area=1.0, inertia=1.0)
     model.spring([2, 3], 1.0, "rotation")
     model.section([4], element="Q4", material=light)
@@ -102,7 +98,7 @@ def ziegler(load: float, damping: float = 0.0) -> Modes:
     return modes(model, bool(damping))
 
 
-def critical(grows: Callable[[float], Modes], low: float, high: float) -> tuple[float, float]:
+def critical(grows: Callable[[float], ct.Modes], low: float, high: float) -> tuple[float, float]:
     """Load from which a mode grows, to 0.1 %, and the frequency at which it does."""
     found = grows(high)
     while high - low > 1e-3 * high:

@@ -11,10 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import cache
 
-from corota.model.model import Model
-from corota.model.paths import ArcLength
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.beam_models import (
     deep_arch,
     lee_frame,
@@ -26,7 +23,7 @@ from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import run
 
 #: Model, last displacement, and the exact load factors at the limit points.
-CASES: dict[str, tuple[Callable[[], tuple[Model, int]], float, tuple[float, float]]] = {
+CASES: dict[str, tuple[Callable[[], tuple[ct.Model, int]], float, tuple[float, float]]] = {
     "Lee's frame": (lee_frame, -62.0, (1.8544527, -0.93924896)),
     "Williams' toggle": (williams_toggle, -0.7, (33.847716, 31.246220)),
     "Lee's frame without shear": (
@@ -47,13 +44,13 @@ TWICE = ("Lee's frame", "Williams' toggle", "von Mises' truss")
 
 
 @cache
-def solved(name: str, first: float = 0.0) -> tuple[Results, int]:
+def solved(name: str, first: float = 0.0) -> tuple[ct.Results, int]:
     """Path of a frame to its last displacement; with the loaded node."""
     make, last, _ = CASES[name]
     model, node = make()
-    path = ArcLength(displacement=(node, "y", last))
+    path = ct.ArcLength(displacement=(node, "y", last))
     fields = name == "Lee's frame" and not first
-    return run(model, Static(path=path, first_increment=first), fields=fields), node
+    return run(model, ct.Static(path=path, first_increment=first), fields=fields), node
 
 
 def measure() -> Iterator[Value]:

@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from corota.model.steps import Dynamic
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import ELEMENTS, run
 from corota.verification.motion_models import column, flyer
@@ -29,13 +28,13 @@ def solved(
     mass: Any = "consistent",
     scheme: Any = "energy_momentum",
     **keys: Any,
-) -> Results:
+) -> ct.Results:
     """Fly for two units of time."""
-    step = Dynamic(period=2.0, increments=40, scheme=scheme, mass=mass, tolerance=1e-11)
+    step = ct.Dynamic(period=2.0, increments=40, scheme=scheme, mass=mass, tolerance=1e-11)
     return run(flyer(element, strain), step, **keys)
 
 
-def drift(results: Results) -> tuple[float, float, float]:
+def drift(results: ct.Results) -> tuple[float, float, float]:
     """Change of linear and angular momentum and of the energy balance, over their sizes."""
     kinetic = float(column(results, "kinetic energy").max())
     linear = max(float(np.ptp(column(results, f"momentum {a}"))) for a in "xy") / kinetic

@@ -16,13 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
+import corota as ct
 from corota.model import elements
-from corota.model.loads import NodalForce
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Dynamic
-from corota.results.results import Results
 from corota.verification.beam_models import polyline
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import cell, run
@@ -31,19 +26,19 @@ PUSH, END, CELLS = 2.5, 4.0, 12
 DEPTH = float(np.sqrt(12.0 * 100.0 / 1e4))
 
 
-def rod(element: str) -> tuple[Model, int]:
+def rod(element: str) -> tuple[ct.Model, int]:
     """The rod; with the node at its lower end that is pushed."""
     if elements.find(element).line:
-        model = Model(polyline(np.linspace([6.0, 0.0], [0.0, 8.0], CELLS + 1)))
-        material = Elastic(E=1e4, nu=0.0, rho=1.0)
+        model = ct.Model(polyline(np.linspace([6.0, 0.0], [0.0, 8.0], CELLS + 1)))
+        material = ct.Elastic(E=1e4, nu=0.0, rho=1.0)
         model.beam(np.arange(CELLS), material=material, area=1.0, inertia=0.01)
         return model, 0
     ny = 1 if element == "Q4I" else 2
-    mesh = meshes.rectangle(10.0, DEPTH, CELLS, ny, cell(element), origin=(0.0, -0.5 * DEPTH))
+    mesh = ct.mesh.rectangle(10.0, DEPTH, CELLS, ny, cell(element), origin=(0.0, -0.5 * DEPTH))
     angle = float(np.degrees(np.arctan2(8.0, -6.0)))
-    mesh = meshes.move(mesh, shift=(6.0, 0.0), angle=angle)
-    model = Model(mesh)
-    material = Elastic(E=1e4 / DEPTH, nu=0.0, rho=1.0 / DEPTH)
+    mesh = ct.mesh.move(mesh, shift=(6.0, 0.0), angle=angle)
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=1e4 / DEPTH, nu=0.0, rho=1.0 / DEPTH)
     model.section("all", element=element, material=material)
     pushed = int(np.argmin(np.hypot(*(mesh.points - [6.0, 0.0]).T)))
     if not elements.find(element).drilling:
@@ -52,22 +47,22 @@ def rod(element: str) -> tuple[Model, int]:
 
 
 @cache
-def flown(element: str, **keys: Any) -> Results:
+def flown(element: str, **keys: Any) -> ct.Results:
     """Push, then fly: increments of 0.01."""
     model, node = rod(element)
     where = np.array([node])
-    loads: list[Any] = [NodalForce(where, 0, 8.0), NodalForce(where, 2, 80.0)]
+    loads: list[Any] = [ct.NodalForce(where, 0, 8.0), ct.NodalForce(where, 2, 80.0)]
     common: dict[str, Any] = {
         "scheme": "energy_momentum",
         "tolerance": 1e-11,
         "max_iterations": 40,
     }
-    push = Dynamic(period=PUSH, increments=250, loads=loads, **common)
-    free = Dynamic(period=END - PUSH, increments=150, new_loads=True, **common)
+    push = ct.Dynamic(period=PUSH, increments=250, loads=loads, **common)
+    free = ct.Dynamic(period=END - PUSH, increments=150, new_loads=True, **common)
     return run(model, [push, free], **keys)
 
 
-def center(results: Results) -> np.ndarray:
+def center(results: ct.Results) -> np.ndarray:
     """Time and center of mass of each frame, shape (n, 3), of lines and of linear cells.
 
     Nodes of a regular mesh weigh as the mass that their shape functions carry.
@@ -116,7 +111,7 @@ def measure() -> Iterator[Value]:
 def picture() -> Picture:
     """The rod when the push ends."""
     results = flown("Q4D", fields=True)
-    return Picture(Results(results.model, [f for f in results.frames if f.step == 1]), "S11")
+    return Picture(ct.Results(results.model, [f for f in results.frames if f.step == 1]), "S11")
 
 
 def curve() -> Curve:

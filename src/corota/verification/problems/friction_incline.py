@@ -15,43 +15,36 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.errors import ConvergenceError
-from corota.model.contact import RigidCurve
-from corota.model.loads import Amplitude
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Dynamic, Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import run
 
 
-def incline(friction: float, method: Any = "mortar") -> Model:
+def incline(friction: float, method: Any = "mortar") -> ct.Model:
     """A block that lies on a slope of 30 degrees."""
-    model = Model(meshes.move(meshes.rectangle(1.0, 0.4, 4, 2), angle=30.0))
-    model.section("all", element="Q4I", material=Elastic(E=1e4, nu=0.3, rho=1.0))
+    model = ct.Model(ct.mesh.move(ct.mesh.rectangle(1.0, 0.4, 4, 2), angle=30.0))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3, rho=1.0))
     model.gravity(y=-10.0)
     c, s = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))
-    slope = RigidCurve.line((-5 * c, -5 * s), (5 * c, 5 * s))
+    slope = ct.RigidCurve.line((-5 * c, -5 * s), (5 * c, 5 * s))
     model.contact("bottom", slope, friction=friction, method=method, name="slope")
     return model
 
 
-def dragged(**keys: Any) -> Results:
+def dragged(**keys: Any) -> ct.Results:
     """A block under a pressure of 10 is dragged over another, friction 0.3."""
-    low = meshes.rectangle(4.0, 0.5, 9, 1)
-    up = meshes.rectangle(1.0, 0.5, 3, 2, origin=(0.7, 0.5))
-    model = Model(meshes.assembly(low=low, up=up))
-    model.section("all", element="Q4I", material=Elastic(E=1e4, nu=0.3))
+    low = ct.mesh.rectangle(4.0, 0.5, 9, 1)
+    up = ct.mesh.rectangle(1.0, 0.5, 3, 2, origin=(0.7, 0.5))
+    model = ct.Model(ct.mesh.assembly(low=low, up=up))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3))
     model.fix("low.bottom")
     time = np.array([0.0, 0.2, 1.0])
-    model.amplitudes["push"] = Amplitude(time, np.array([0.0, 1.0, 1.0]))
-    model.amplitudes["drag"] = Amplitude(time, np.array([0.0, 0.0, 1.5]))
+    model.amplitudes["push"] = ct.Amplitude(time, np.array([0.0, 1.0, 1.0]))
+    model.amplitudes["drag"] = ct.Amplitude(time, np.array([0.0, 0.0, 1.5]))
     model.fix("up.top", x=1.0, y=None, amplitude="drag")
     model.traction("up.top", y=-10.0, amplitude="push")
     model.contact("up.bottom", "low.top", friction=0.3, name="pair")
-    return run(model, Static(first_increment=0.2, largest_increment=0.2), **keys)
+    return run(model, ct.Static(first_increment=0.2, largest_increment=0.2), **keys)
 
 
 def sliding(friction: float) -> float:
@@ -60,7 +53,7 @@ def sliding(friction: float) -> float:
     model.loads.clear()
     model.gravity(y=-10.0)
     period, mass = 0.2, 0.4
-    step = Dynamic(period=period, increments=80, scheme="generalized_alpha", rho_inf=0.5)
+    step = ct.Dynamic(period=period, increments=80, scheme="generalized_alpha", rho_inf=0.5)
     last = run(model, step).frames[-1].scalars
     c, s = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))
     return -float(last["momentum x"] * c + last["momentum y"] * s) / (mass * period)
@@ -75,9 +68,9 @@ def measure() -> Iterator[Value]:
             f"force across, friction 0.58, {method}", 0.0, sums["slope: force x"], 1e-8, "absolute"
         )
     try:
-        run(incline(0.57), Static(smallest_increment=0.1))
+        run(incline(0.57), ct.Static(smallest_increment=0.1))
         slides = 0.0
-    except ConvergenceError as error:
+    except ct.ConvergenceError as error:
         slides = float("friction does not hold" in str(error))
     yield Value("refused as sliding, friction 0.57", 1.0, slides, 0.0, "absolute")
     for friction in (0.0, 0.3):

@@ -14,11 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Buckle, Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import ELEMENTS, cell, nearest, run
 
@@ -27,11 +23,11 @@ LENGTH, DEPTH, WARM = 20.0, 0.5, 200.0
 CURVATURE = 1.5 * WARM * 1e-5 / DEPTH
 
 
-def plate(element: str, plane: Any, held: bool) -> Results:
+def plate(element: str, plane: Any, held: bool) -> ct.Results:
     """A plate of distorted cells, one degree warmer, free or held along x."""
-    mesh = meshes.distort(meshes.rectangle(3.0, 2.0, 3, 2, cell(element)), 0.2, seed=1)
-    model = Model(mesh)
-    material = Elastic(YOUNG, NU, expansion=ALPHA)
+    mesh = ct.mesh.distort(ct.mesh.rectangle(3.0, 2.0, 3, 2, cell(element)), 0.2, seed=1)
+    model = ct.Model(mesh)
+    material = ct.Elastic(YOUNG, NU, expansion=ALPHA)
     model.section("all", element=element, material=material, plane=plane)
     if held:
         for side in ("left", "right"):
@@ -41,22 +37,22 @@ def plate(element: str, plane: Any, held: bool) -> Results:
         model.fix([nearest(mesh, 0.0, 0.0)])
         model.fix([nearest(mesh, 3.0, 0.0)], x=None)
     model.temperature(1.0)
-    return run(model, Static(nlgeom=False), fields=True)
+    return run(model, ct.Static(nlgeom=False), fields=True)
 
 
-def strip(element: str = "Q8", **keys: Any) -> Results:
+def strip(element: str = "Q8", **keys: Any) -> ct.Results:
     """Two metals on each other; the left end is held along x, its lower corner altogether."""
-    mesh = meshes.rectangle(LENGTH, DEPTH, 60, 4, cell(element))
+    mesh = ct.mesh.rectangle(LENGTH, DEPTH, 60, 4, cell(element))
     middle = mesh.points[mesh.cells[0].nodes[:, :3]].mean(axis=1)[:, 1]
     mesh.cell_sets["upper"] = np.flatnonzero(middle > 0.5 * DEPTH)
     mesh.cell_sets["lower"] = np.flatnonzero(middle < 0.5 * DEPTH)
-    model = Model(mesh)
+    model = ct.Model(mesh)
     for name, alpha in (("upper", 2e-5), ("lower", 1e-5)):
-        model.section(name, element=element, material=Elastic(2e5, 0.0, expansion=alpha))
+        model.section(name, element=element, material=ct.Elastic(2e5, 0.0, expansion=alpha))
     model.fix("left", y=None)
     model.fix([nearest(mesh, 0.0, 0.0)])
     model.temperature(WARM)
-    return run(model, Static(increments=4), **keys)
+    return run(model, ct.Static(increments=4), **keys)
 
 
 def circle(part: Any = 1.0) -> Any:
@@ -96,16 +92,16 @@ def measure() -> Iterator[Value]:
         found = -float(results.frames[-1].U[tip, 1])
         yield Value(f"deflection of the strip, {element} 60 x 4", circle(), found, 3e-3)
     critical = np.pi**2 / 12.0 / 100.0**2
-    mesh = meshes.rectangle(100.0, 1.0, 40, 1, "quad8", origin=(0.0, -0.5))
-    model = Model(mesh)
-    model.section("all", element="Q8", material=Elastic(YOUNG, 0.0, expansion=ALPHA))
+    mesh = ct.mesh.rectangle(100.0, 1.0, 40, 1, "quad8", origin=(0.0, -0.5))
+    model = ct.Model(mesh)
+    model.section("all", element="Q8", material=ct.Elastic(YOUNG, 0.0, expansion=ALPHA))
     for side, x in (("left", 0.0), ("right", 100.0)):
         # A hinge in the middle of a rigid end; on a node alone it would press into the column.
         hinge = nearest(mesh, x, 0.0)
         model.rigid(np.setdiff1d(mesh.nodes_of(side), hinge), hinge)
         model.fix([hinge])
     model.temperature(1.0)
-    factor = run(model, Buckle()).modes[0].factors[0]
+    factor = run(model, ct.Buckle()).modes[0].factors[0]
     yield Value("alpha T of the column, Q8 40 x 1", critical, ALPHA * factor, 1e-3)
 
 

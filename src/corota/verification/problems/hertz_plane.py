@@ -17,8 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.contact_models import (
     FORCE,
@@ -36,9 +35,9 @@ CASES = [("strain", "Q4I", 48), ("stress", "Q4I", 48), ("strain", "Q8", 32), ("s
 
 
 @cache
-def solved(plane: Any, element: str, n: int) -> Results:
+def solved(plane: Any, element: str, n: int) -> ct.Results:
     """The pressed cylinder."""
-    return run(cylinder(plane, n, element), Static(nlgeom=False), fields=True)
+    return run(cylinder(plane, n, element), ct.Static(nlgeom=False), fields=True)
 
 
 def approach(plane: str, force: float = FORCE) -> float:
@@ -48,15 +47,15 @@ def approach(plane: str, force: float = FORCE) -> float:
 
 
 @cache
-def between_plates(plane: Any, element: str, n: int) -> Results:
+def between_plates(plane: Any, element: str, n: int) -> ct.Results:
     """The same cylinder between two plates: its middle stays plane and moves by that way."""
     model = cylinder(plane, n, element)
     model.loads.clear()
     model.fix("top", x=None, y=-approach(plane))
-    return run(model, Static(nlgeom=False))
+    return run(model, ct.Static(nlgeom=False))
 
 
-def below(results: Results) -> tuple[np.ndarray, np.ndarray]:
+def below(results: ct.Results) -> tuple[np.ndarray, np.ndarray]:
     """Depth below the point of contact, and the largest shear stress in the plane there."""
     mesh = results.mesh
     nodes = mesh.nodes_of("left")
@@ -66,7 +65,7 @@ def below(results: Results) -> tuple[np.ndarray, np.ndarray]:
     return depth[order], shear[order]
 
 
-def largest(results: Results) -> tuple[float, float]:
+def largest(results: ct.Results) -> tuple[float, float]:
     """Largest shear stress and its depth, from a parabola through the three largest nodes."""
     depth, shear = below(results)
     k = int(shear.argmax())

@@ -15,7 +15,7 @@ from functools import cache
 
 import numpy as np
 
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.contact_models import ACROSS, ironing, steps
 from corota.verification.models import run
@@ -24,7 +24,7 @@ FRICTION = 0.3
 
 
 @cache
-def solved(friction: float, finer: int = 1) -> Results:
+def solved(friction: float, finer: int = 1) -> ct.Results:
     """Press and draw; `finer` divides the increments."""
     way = steps()
     for step in way:
@@ -33,14 +33,14 @@ def solved(friction: float, finer: int = 1) -> Results:
     return run(ironing(friction, n=8), list(way), fields=True)
 
 
-def forces(results: Results) -> np.ndarray:
+def forces(results: ct.Results) -> np.ndarray:
     """Step time across, force across and down at the top of the die, shape (n, 3)."""
     top = results.mesh.nodes_of("die.top")
     frames = [f for f in results.frames if f.step == 2]
     return np.array([[f.step_time, f.RF[top, 0].sum(), -f.RF[top, 1].sum()] for f in frames])
 
 
-def work(results: Results) -> float:
+def work(results: ct.Results) -> float:
     """Work of the loads over the energy that is stored and the friction's."""
     last = results.frames[-1].scalars
     return last["external work"] / (last["strain energy"] + last["friction energy"])
@@ -85,7 +85,7 @@ def picture() -> Picture:
     """Half way across."""
     results = solved(FRICTION)
     half = [f for f in results.frames if f.step == 1 or f.step_time <= 0.51]
-    return Picture(Results(results.model, half), "MISES")
+    return Picture(ct.Results(results.model, half), "MISES")
 
 
 def curve() -> Curve:

@@ -15,11 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.contact_models import ellipse_of, with_middles
 from corota.verification.models import cell, run
@@ -46,17 +42,17 @@ def roller(
     nlgeom: bool = False,
     method: str = "mortar",
     **keys: Any,
-) -> Results:
+) -> ct.Results:
     """A quarter of the roller on half of the block; the load is that of the whole."""
     kind, corner = cell(element), (0.6 * R, R)
-    disc = meshes.mapped(
+    disc = ct.mesh.mapped(
         [_arc, _graded(_arc(1.0), corner), _graded((0, R), corner), _graded((0, 0), (0, R))],
         n,
         n,
         kind,
     )
     up, side = _graded((0, 0), (0, -H)), _graded((H, 0), (H, -H))
-    block = meshes.mapped(
+    block = ct.mesh.mapped(
         [
             _graded((0, -H), (H, -H)),
             lambda t: side(1.0 - np.asarray(t)),
@@ -67,25 +63,25 @@ def roller(
         n,
         kind,
     )
-    disc = meshes.move(with_middles(meshes.move(disc, (0.0, -R)), R), (0.0, R))
-    model = Model(meshes.assembly(disc=disc, block=with_middles(block, R)))
+    disc = ct.mesh.move(with_middles(ct.mesh.move(disc, (0.0, -R)), R), (0.0, R))
+    model = ct.Model(ct.mesh.assembly(disc=disc, block=with_middles(block, R)))
     for name, modulus in (("disc", E1), ("block", E2)):
-        material = Elastic(E=modulus, nu=NU)
+        material = ct.Elastic(E=modulus, nu=NU)
         model.section(name, element=element, material=material, plane=plane)
         model.fix(f"{name}.left", x=0.0, y=None, rotation=True)
     model.fix("block.bottom", x=None, y=0.0)
     model.traction("disc.top", y=-0.5 * load / (0.6 * R))
     model.contact("disc.bottom", "block.top", name="roller", method=method)
-    return run(model, Static(nlgeom=nlgeom), **keys)
+    return run(model, ct.Static(nlgeom=nlgeom), **keys)
 
 
-def pressures(results: Results) -> tuple[np.ndarray, np.ndarray]:
+def pressures(results: ct.Results) -> tuple[np.ndarray, np.ndarray]:
     """Place and contact pressure of the nodes of the roller."""
     nodes = results.mesh.nodes_of("disc.bottom")
     return results.mesh.points[nodes, 0], np.asarray(results.nodal("CPRESS")[nodes])
 
 
-def ellipse(results: Results) -> tuple[float, float]:
+def ellipse(results: ct.Results) -> tuple[float, float]:
     """Half width and peak of the ellipse of the pressures."""
     return ellipse_of(*pressures(results))
 

@@ -12,9 +12,7 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
-from corota.model.paths import ArcLength
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.frame_models import lee_frame
 from corota.verification.models import run
@@ -24,11 +22,11 @@ EXACT = [(1.8544527, 26.87833, -48.75424), (-0.93924896, 90.17700, -58.22496)]
 
 
 @cache
-def solved(element: str = "Q8", **keys: Any) -> tuple[Results, int]:
+def solved(element: str = "Q8", **keys: Any) -> tuple[ct.Results, int]:
     """Path to a displacement of 62; with the loaded node."""
     model, node = lee_frame(element)
-    path = ArcLength(displacement=(node, "y", -62.0))
-    return run(model, Static(path=path), **keys), node
+    path = ct.ArcLength(displacement=(node, "y", -62.0))
+    return run(model, ct.Static(path=path), **keys), node
 
 
 def measure() -> Iterator[Value]:

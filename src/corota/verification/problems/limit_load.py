@@ -17,11 +17,7 @@ from functools import cache
 import numpy as np
 from scipy.optimize import brentq
 
-from corota import mesh as meshes
-from corota.model.model import Model
-from corota.model.plasticity import Mises
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import DRILLING, cell, run
 from corota.verification.plastic_models import cantilever
@@ -32,22 +28,24 @@ CASES = [("Q8R", 4), ("Q8", 4), ("Q4I", 8), ("Q4D", 8)]
 
 
 @cache
-def solved(shape: str, element: str, ny: int) -> Results:
+def solved(shape: str, element: str, ny: int) -> ct.Results:
     """The cantilever, its tip moved."""
     length, height, strength, move = SHAPES[shape]
     if shape == "10 x 1":
         model = cantilever(element, ny, move)
     else:
         nx = round(ny * length / height)
-        model = Model(meshes.rectangle(length, height, nx, ny, cell(element)))
-        law = Mises(E=1000.0, nu=0.3, yield_stress=strength)
+        model = ct.Model(ct.mesh.rectangle(length, height, nx, ny, cell(element)))
+        law = ct.Mises(E=1000.0, nu=0.3, yield_stress=strength)
         model.section("all", element=element, material=law)
         model.fix("left", rotation=True if element in DRILLING else None)
         model.fix("right", x=None, y=-move)
-    return run(model, Static(nlgeom=False, first_increment=0.1, largest_increment=0.1), fields=True)
+    return run(
+        model, ct.Static(nlgeom=False, first_increment=0.1, largest_increment=0.1), fields=True
+    )
 
 
-def loads(results: Results, shape: str) -> tuple[np.ndarray, np.ndarray]:
+def loads(results: ct.Results, shape: str) -> tuple[np.ndarray, np.ndarray]:
     """Movement of the tip, and force over the limit of beam theory."""
     length, height, strength, move = SHAPES[shape]
     right = results.mesh.nodes_of("right")

@@ -15,11 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.mesh import Mesh
-from corota.model.loads import NodalForce
-from corota.model.materials import Elastic
-from corota.model.model import Model
+import corota as ct
 from corota.verification.catalogue import Problem, Study, Value
 from corota.verification.models import (
     DRILLING,
@@ -77,7 +73,7 @@ def waves_body_force(x: np.ndarray) -> np.ndarray:
     )
 
 
-def points_of(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def points_of(mesh: ct.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Shape functions (p, n), gradients (e, p, n, 2), places (e, p, 2), volumes (e, p)."""
     nodes = mesh.cells[0].nodes
     xi, weights = gauss(nodes.shape[1], 4)
@@ -88,13 +84,13 @@ def points_of(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarra
     return values, gradients, np.einsum("pn,eni->epi", values, x), weights * np.linalg.det(jacobian)
 
 
-def body_forces(mesh: Mesh, force: Callable[[np.ndarray], np.ndarray]) -> list[Any]:
+def body_forces(mesh: ct.Mesh, force: Callable[[np.ndarray], np.ndarray]) -> list[Any]:
     """Consistent nodal forces of a field, with the shape functions of the cells."""
     values, _, places, volumes = points_of(mesh)
     parts = np.einsum("ep,epi,pn->eni", volumes, force(places), values)
     total = np.zeros((mesh.n_nodes, 2))
     np.add.at(total, mesh.cells[0].nodes, parts)
-    return [NodalForce(np.array([a]), i, float(v)) for (a, i), v in np.ndenumerate(total)]
+    return [ct.NodalForce(np.array([a]), i, float(v)) for (a, i), v in np.ndenumerate(total)]
 
 
 SOLUTIONS: dict[str, tuple[Field, Callable[[np.ndarray], np.ndarray] | None]] = {
@@ -106,9 +102,9 @@ SOLUTIONS: dict[str, tuple[Field, Callable[[np.ndarray], np.ndarray] | None]] = 
 def errors(element: str, n: int, solution: str) -> tuple[float, float]:
     """L2 norms of the errors of the interpolated displacement and of its gradient."""
     exact, force = SOLUTIONS[solution]
-    model = Model(meshes.mapped(REGION, n, n, cell(element), "alternate"))
+    model = ct.Model(ct.mesh.mapped(REGION, n, n, cell(element), "alternate"))
     mesh = model.mesh
-    model.section("all", element=element, material=Elastic(E=YOUNG, nu=POISSON))
+    model.section("all", element=element, material=ct.Elastic(E=YOUNG, nu=POISSON))
     edge = boundary(mesh)
     u, _, rotation = exact(mesh.points[edge])
     prescribe(model, edge, u, rotation if element in DRILLING else None)

@@ -11,10 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
+import corota as ct
 from corota.verification.catalogue import Problem, Value
 from corota.verification.models import ELEMENTS, Watch, cell, cook, run
 
@@ -26,19 +23,19 @@ def order(element: str, strain: Any) -> float:
     """Smallest order over the increments of Cook's membrane."""
     model, _ = cook(element, 4, force=0.3, local_strain=strain)
     watch = Watch()
-    run(model, Static(increments=2, tolerance=1e-12), observers=[watch])
+    run(model, ct.Static(increments=2, tolerance=1e-12), observers=[watch])
     return float(watch.orders(LENGTH, 1e-3).min())
 
 
 def pressure_order(element: str) -> float:
     """Smallest order of a strip bent by a following pressure, its ends open."""
-    mesh = meshes.rectangle(10.0, 1.0, 20, 2, cell(element), "alternate")
-    model = Model(mesh)
-    model.section("all", element=element, material=Elastic(E=1200.0, nu=0.3))
+    mesh = ct.mesh.rectangle(10.0, 1.0, 20, 2, cell(element), "alternate")
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=1200.0, nu=0.3))
     model.fix("left", rotation=True)
     model.pressure("bottom", 0.5)
     watch = Watch()
-    run(model, Static(increments=4, tolerance=1e-11), observers=[watch])
+    run(model, ct.Static(increments=4, tolerance=1e-11), observers=[watch])
     return float(watch.orders(0.1, 1e-2).min())
 
 

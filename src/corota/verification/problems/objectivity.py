@@ -14,11 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
+import corota as ct
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
-from corota.model.materials import Elastic
-from corota.model.model import Model
 from corota.verification.catalogue import Problem, Value
 from corota.verification.models import DRILLING, ELEMENTS, assemble, cell
 
@@ -26,15 +24,15 @@ STRAINS = ("linear", "green_lagrange", "logarithmic")
 YOUNG = 1000.0
 
 
-def patch(element: str, strain: Any = "linear") -> Model:
+def patch(element: str, strain: Any = "linear") -> ct.Model:
     """Distorted cells 2 x 2 on a rectangle 2 x 1."""
-    mesh = meshes.distort(meshes.rectangle(2.0, 1.0, 2, 2, cell(element)), 0.2, seed=3)
-    model = Model(mesh)
-    model.section("all", element=element, material=Elastic(E=YOUNG, nu=0.3), local_strain=strain)
+    mesh = ct.mesh.distort(ct.mesh.rectangle(2.0, 1.0, 2, 2, cell(element)), 0.2, seed=3)
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=YOUNG, nu=0.3), local_strain=strain)
     return model
 
 
-def turned(model: Model, u: np.ndarray, angle: float, shift: float = 0.0) -> np.ndarray:
+def turned(model: ct.Model, u: np.ndarray, angle: float, shift: float = 0.0) -> np.ndarray:
     """Displacements (and rotations) of the body in the state `u`, turned and moved."""
     x = model.mesh.points + u[:, :2]
     c, s = np.cos(angle), np.sin(angle)

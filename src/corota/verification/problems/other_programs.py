@@ -15,11 +15,7 @@ from functools import cache
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Dynamic, Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import nearest, run
 
@@ -29,11 +25,11 @@ STATIC = {4: (-3.26267, 6.70523)}
 MOTION = {1000.0: 5.40408, 2000.0: 7.80065}
 
 
-def cantilever(n: int, load: float) -> tuple[Model, int]:
+def cantilever(n: int, load: float) -> tuple[ct.Model, int]:
     """The cantilever; with the middle of its end."""
-    mesh = meshes.rectangle(10.0, 1.0, 10 * n, n)
-    model = Model(mesh)
-    material = Elastic(E=1.2e6, nu=0.3, rho=1.0)
+    mesh = ct.mesh.rectangle(10.0, 1.0, 10 * n, n)
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=1.2e6, nu=0.3, rho=1.0)
     model.section(
         "all", element="Q4", material=material, thickness=0.01, local_strain="green_lagrange"
     )
@@ -43,17 +39,17 @@ def cantilever(n: int, load: float) -> tuple[Model, int]:
 
 
 @cache
-def bent(n: int, **keys: bool) -> tuple[Results, int]:
+def bent(n: int, **keys: bool) -> tuple[ct.Results, int]:
     """At rest, ten increments."""
     model, tip = cantilever(n, 4000.0)
-    return run(model, Static(increments=10), **keys), tip
+    return run(model, ct.Static(increments=10), **keys), tip
 
 
 @cache
 def moved(load: float) -> tuple[np.ndarray, np.ndarray]:
     """Times, and displacements y of the middle of the end."""
     model, tip = cantilever(4, load)
-    step = Dynamic(period=1.0, increments=200, scheme="newmark", mass="constant")
+    step = ct.Dynamic(period=1.0, increments=200, scheme="newmark", mass="constant")
     frames = run(model, step).frames
     return np.array([f.time for f in frames]), np.array([f.U[tip, 1] for f in frames])
 

@@ -15,11 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.special import ellipk
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Dynamic
-from corota.results.results import Results
+import corota as ct
 from corota.verification.beam_models import polyline
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import cell, run
@@ -37,18 +33,18 @@ PERIOD = float(
 )
 
 
-def pendulum(element: str) -> Model:
+def pendulum(element: str) -> ct.Model:
     """The rod pinned at its lower left corner."""
-    model = Model(meshes.rectangle(LENGTH, DEPTH, nx=10, ny=1, cell=cell(element)))
-    model.section("all", element=element, material=Elastic(E=1e7, nu=0.0, rho=1.0))
+    model = ct.Model(ct.mesh.rectangle(LENGTH, DEPTH, nx=10, ny=1, cell=cell(element)))
+    model.section("all", element=element, material=ct.Elastic(E=1e7, nu=0.0, rho=1.0))
     model.fix([int(np.argmin(np.hypot(*model.mesh.points.T)))])
     model.gravity(y=-GRAVITY)
     return model
 
 
-def swing(element: str, periods: float = 1.6, per_period: int = 200, **keys: Any) -> Results:
+def swing(element: str, periods: float = 1.6, per_period: int = 200, **keys: Any) -> ct.Results:
     """Swing with the energy-momentum scheme."""
-    step = Dynamic(
+    step = ct.Dynamic(
         period=periods * PERIOD,
         increments=round(periods * per_period),
         scheme="energy_momentum",
@@ -57,14 +53,14 @@ def swing(element: str, periods: float = 1.6, per_period: int = 200, **keys: Any
     return run(pendulum(element), step, **keys)
 
 
-def tip(results: Results) -> tuple[np.ndarray, np.ndarray]:
+def tip(results: ct.Results) -> tuple[np.ndarray, np.ndarray]:
     """Time and position x of the end."""
     nodes = results.mesh.nodes_of("right")
     x = np.array([LENGTH + f.U[nodes, 0].mean() for f in results.frames])
     return np.array([f.time for f in results.frames]), x
 
 
-def period(results: Results) -> float:
+def period(results: ct.Results) -> float:
     """Twice the time between two passages through the middle."""
     return crossings(*tip(results))
 
@@ -78,12 +74,12 @@ def crossings(time: np.ndarray, x: np.ndarray) -> float:
 
 def on_a_bar() -> float:
     """Period of a point mass on a bar of length 1 that is released horizontally."""
-    model = Model(polyline([[0.0, 0.0], [LENGTH, 0.0]]))
-    model.truss([0], material=Elastic(E=1e6, nu=0.0, rho=1e-6), area=1.0)
+    model = ct.Model(polyline([[0.0, 0.0], [LENGTH, 0.0]]))
+    model.truss([0], material=ct.Elastic(E=1e6, nu=0.0, rho=1e-6), area=1.0)
     model.point_mass([1], 1.0)
     model.fix([0])
     model.force([1], y=-GRAVITY)
-    step = Dynamic(
+    step = ct.Dynamic(
         period=1.6 * MASS_PERIOD, increments=640, scheme="energy_momentum", tolerance=1e-10
     )
     frames = run(model, step).frames

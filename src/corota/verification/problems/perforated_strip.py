@@ -15,9 +15,7 @@ from functools import cache
 
 import numpy as np
 
-from corota.model.plasticity import Mises
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import run
 from corota.verification.plastic_models import find, perforated_strip
@@ -28,21 +26,21 @@ HARDENING = [("Q8", 5, 16.7764), ("Q8", 15, 16.7656)]
 
 
 @cache
-def limit(element: str, n: int, pull: float = 0.3) -> Results:
+def limit(element: str, n: int, pull: float = 0.3) -> ct.Results:
     """Perfectly plastic, small displacements, thickness 1."""
-    law = Mises(E=70000.0, nu=0.2, yield_stress=243.0)
+    law = ct.Mises(E=70000.0, nu=0.2, yield_stress=243.0)
     model = perforated_strip(element, n, law, pull, thickness=1.0)
-    return run(model, Static(nlgeom=False, increments=10), fields=True)
+    return run(model, ct.Static(nlgeom=False, increments=10), fields=True)
 
 
 @cache
-def hardened(element: str, n: int) -> Results:
+def hardened(element: str, n: int) -> ct.Results:
     """With hardening, large displacement, twenty increments."""
     model = perforated_strip(element, n, local_strain="logarithmic")
-    return run(model, Static(increments=20))
+    return run(model, ct.Static(increments=20))
 
 
-def force(results: Results) -> np.ndarray:
+def force(results: ct.Results) -> np.ndarray:
     """Force at the top in each frame."""
     top = find(results.mesh, 1, 18.0)
     return np.array([f.RF[top, 1].sum() for f in results.frames])
@@ -80,7 +78,7 @@ def measure() -> Iterator[Value]:
         )
 
 
-def factors(results: Results) -> np.ndarray:
+def factors(results: ct.Results) -> np.ndarray:
     """Share of the pull in each frame."""
     return np.array([f.factor for f in results.frames])
 

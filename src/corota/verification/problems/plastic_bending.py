@@ -14,12 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.loads import Fixed
-from corota.model.model import Model
-from corota.model.plasticity import Mises
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import DRILLING, cell, last_frames, run
 
@@ -29,9 +24,9 @@ RATIOS = (1.5, 2.0, 3.0, 5.0, 10.0)
 def bend(curvature: list[float], element: str = "Q8", layers: int = 10) -> np.ndarray:
     """Moment over that at first yield, along a history of curvatures over the first."""
     height, length, E, sy = 1.0, 0.5, 200000.0, 200.0
-    mesh = meshes.rectangle(length, height, 1, layers, cell(element), origin=(0.0, -0.5))
-    model = Model(mesh)
-    model.section("all", element=element, material=Mises(E=E, nu=0.0, yield_stress=sy))
+    mesh = ct.mesh.rectangle(length, height, 1, layers, cell(element), origin=(0.0, -0.5))
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Mises(E=E, nu=0.0, yield_stress=sy))
     model.fix("left", x=0.0, y=None)
     model.fix([0], x=None, y=0.0)
     first = 2.0 * sy / E / height
@@ -40,27 +35,27 @@ def bend(curvature: list[float], element: str = "Q8", layers: int = 10) -> np.nd
     steps: list[Any] = []
     for value in curvature:
         held = [
-            Fixed(np.array([node]), 0, float(-value * first * length * place))
+            ct.Fixed(np.array([node]), 0, float(-value * first * length * place))
             for node, place in zip(right, y, strict=True)
         ]
         if element in DRILLING:
-            held.append(Fixed(right, 2, value * first * length))
-        steps.append(Static(nlgeom=False, increments=4, supports=held))
+            held.append(ct.Fixed(right, 2, value * first * length))
+        steps.append(ct.Static(nlgeom=False, increments=4, supports=held))
     frames = last_frames(run(model, steps))
     return np.array([-(f.RF[right, 0] @ y) for f in frames]) / (sy * height**2 / 6)
 
 
-def cantilever(ratio: float, **keys: Any) -> tuple[Results, float, float]:
+def cantilever(ratio: float, **keys: Any) -> tuple[ct.Results, float, float]:
     """Deflection over that at the elastic limit, computed and exact, at `ratio` times its load."""
     length, E, sy = 40.0, 200000.0, 200.0
-    mesh = meshes.rectangle(length, 1.0, 80, 6, "quad8")
+    mesh = ct.mesh.rectangle(length, 1.0, 80, 6, "quad8")
     limit = sy / (6 * length)
     elastic = limit * length**3 / (3 * E / 12)
-    model = Model(mesh)
-    model.section("all", element="Q8R", material=Mises(E=E, nu=0.0, yield_stress=sy))
+    model = ct.Model(mesh)
+    model.section("all", element="Q8R", material=ct.Mises(E=E, nu=0.0, yield_stress=sy))
     model.fix("left")
     model.traction("right", y=-ratio * limit)
-    results = run(model, Static(nlgeom=False, increments=10), **keys)
+    results = run(model, ct.Static(nlgeom=False, increments=10), **keys)
     tip = -float(results.frames[-1].U[mesh.nodes_of("right"), 1].mean())
     q = np.sqrt(3.0 - 2.0 * ratio)
     return results, tip / elastic, float((5.0 - (3.0 + ratio) * q) / ratio**2)
@@ -70,15 +65,15 @@ def cycles(kind: str) -> tuple[list[float], list[float]]:
     """Stress after each reversal of strain at 0.005, computed and exact."""
     E, sy, H = 200000.0, 250.0, 5000.0
     slope = E * H / (E + H)
-    model = Model(meshes.rectangle(2.0, 1.0, 2, 1))
+    model = ct.Model(ct.mesh.rectangle(2.0, 1.0, 2, 1))
     options: dict[str, Any] = {kind: H}
-    model.section("all", element="Q4I", material=Mises(E=E, nu=0.3, yield_stress=sy, **options))
+    model.section("all", element="Q4I", material=ct.Mises(E=E, nu=0.3, yield_stress=sy, **options))
     model.fix("left", y=None)
     model.fix("bottom", x=None)
     steps: list[Any] = []
     for target in (0.005, -0.005):
-        support = Fixed(model.mesh.nodes_of("right"), 0, 2 * target)
-        steps.append(Static(nlgeom=False, increments=5, supports=[support]))
+        support = ct.Fixed(model.mesh.nodes_of("right"), 0, 2 * target)
+        steps.append(ct.Static(nlgeom=False, increments=5, supports=[support]))
     frames = last_frames(run(model, steps, fields=True))
     found = [float(f.fields[0].values["S"][0, 0, 0]) for f in frames]
     top = sy + slope * (0.005 - sy / E)

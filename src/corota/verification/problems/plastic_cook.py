@@ -13,8 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cache
 
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import nearest, run
 from corota.verification.plastic_models import cook
@@ -33,9 +32,9 @@ CASES = [
 
 
 @cache
-def solved(element: str, n: int) -> Results:
+def solved(element: str, n: int) -> ct.Results:
     """The panel under its load."""
-    return run(cook(element, n), Static(first_increment=0.2), fields=n <= 16)
+    return run(cook(element, n), ct.Static(first_increment=0.2), fields=n <= 16)
 
 
 def rise(element: str, n: int) -> float:

@@ -16,11 +16,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.model import Model
-from corota.model.plasticity import Mises
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Problem, Value
 from corota.verification.models import boundary, cell, last_frames, prescribe, run
 
@@ -64,27 +60,27 @@ def point(increments: int) -> np.ndarray:
     for step in STEPS:
         rows.append(np.column_stack([start + step * share, np.zeros(increments)]))
         start = start + step
-    answer = Mises(E=E, nu=NU, yield_stress=YIELD).respond(np.concatenate(rows), "strain")
+    answer = ct.Mises(E=E, nu=NU, yield_stress=YIELD).respond(np.concatenate(rows), "strain")
     return np.asarray(answer["stress"])[increments - 1 :: increments, :2]
 
 
-def strained(model: Model) -> Results:
+def strained(model: ct.Model) -> ct.Results:
     """All steps of the path on the boundary of a model."""
     edge, total, steps = boundary(model.mesh), np.zeros(2), []
     for step in STEPS:
         total = total + step
-        part = Model(model.mesh)
+        part = ct.Model(model.mesh)
         prescribe(part, edge, model.mesh.points[edge] * total)
-        steps.append(Static(nlgeom=False, increments=COARSE, supports=part.supports))
+        steps.append(ct.Static(nlgeom=False, increments=COARSE, supports=part.supports))
     return run(model, list(steps), fields=True)
 
 
 def patch(element: str) -> np.ndarray:
     """Stresses (xx, yy) after each step of a distorted mesh whose boundary moves."""
-    mesh = meshes.distort(meshes.rectangle(1.0, 1.0, 3, 3, cell(element)), 0.2, seed=1)
-    model = Model(mesh)
+    mesh = ct.mesh.distort(ct.mesh.rectangle(1.0, 1.0, 3, 3, cell(element)), 0.2, seed=1)
+    model = ct.Model(mesh)
     model.section(
-        "all", element=element, material=Mises(E=E, nu=NU, yield_stress=YIELD), plane="strain"
+        "all", element=element, material=ct.Mises(E=E, nu=NU, yield_stress=YIELD), plane="strain"
     )
     frames = last_frames(strained(model))
     return np.array([f.fields[0].values["S"][..., :2].reshape(-1, 2) for f in frames])

@@ -13,10 +13,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cell, edge_forces, nearest, run
 from corota.verification.plastic_models import find, strip_mesh
@@ -38,16 +35,16 @@ def kirsch(x: float, y: float) -> np.ndarray:
     )
 
 
-def _quarter(element: str, n: int, width: float, height: float) -> Model:
+def _quarter(element: str, n: int, width: float, height: float) -> ct.Model:
     mesh = strip_mesh(n, cell(element), width, height)
-    model = Model(mesh)
-    model.section("all", element=element, material=Elastic(E=1000.0, nu=0.3))
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=1000.0, nu=0.3))
     model.fix(find(mesh, 0, 0.0), y=None)
     model.fix(find(mesh, 1, 0.0), x=None)
     return model
 
 
-def _edges(model: Model, axis: int, value: float) -> str:
+def _edges(model: ct.Model, axis: int, value: float) -> str:
     mesh, edges = model.mesh, model.mesh.boundary_edges()
     middle = [mesh.points[list(nodes)[:2], axis] for nodes in mesh.edge_nodes(edges)]
     name = f"side {axis}"
@@ -55,7 +52,7 @@ def _edges(model: Model, axis: int, value: float) -> str:
     return name
 
 
-def infinite(element: str, n: int) -> Results:
+def infinite(element: str, n: int) -> ct.Results:
     """Square of twice the hole's radius with Kirsch's tractions; it is pulled along x."""
     model = _quarter(element, n, 2.0 * R, 2.0 * R + 2.0 * R)
     for axis, place in ((0, 2.0 * R), (1, 4.0 * R)):
@@ -65,17 +62,17 @@ def infinite(element: str, n: int) -> Results:
             return np.array([s[0], s[2]] if axis == 0 else [s[2], s[1]])
 
         model.loads += edge_forces(model.mesh, _edges(model, axis, place), traction)
-    return run(model, Static(nlgeom=False), fields=True)
+    return run(model, ct.Static(nlgeom=False), fields=True)
 
 
-def strip(element: str, n: int) -> Results:
+def strip(element: str, n: int) -> ct.Results:
     """Quarter of a long strip, half width twice the hole's radius, pulled along y."""
     model = _quarter(element, n, 2.0 * R, 12.0 * R)
     model.traction(_edges(model, 1, 12.0 * R), y=1.0)
-    return run(model, Static(nlgeom=False), fields=True)
+    return run(model, ct.Static(nlgeom=False), fields=True)
 
 
-def stresses(results: Results) -> tuple[float, float]:
+def stresses(results: ct.Results) -> tuple[float, float]:
     """Stress along x at the pole of the hole (0, R), and along y at its side (R, 0)."""
     mesh = results.mesh
     pole, side = nearest(mesh, 0.0, R), nearest(mesh, R, 0.0)

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota.model.plasticity import Mises
+import corota as ct
 from corota.verification.catalogue import Problem, Value
 
 CORNERS = np.array([(0, 0, 0), (0.002, 0, 0), (0.002, 0, 0.004), (-0.001, 0.001, 0.004), (0, 0, 0)])
@@ -46,7 +46,9 @@ def path(steps: int) -> np.ndarray:
 def measure() -> Iterator[Value]:
     """Every component at every corner."""
     for k, h, steps, legs, alpha in ROWS:
-        law = Mises(E=200000.0, nu=0.3, yield_stress=250.0, isotropic=float(k), kinematic=float(h))
+        law = ct.Mises(
+            E=200000.0, nu=0.3, yield_stress=250.0, isotropic=float(k), kinematic=float(h)
+        )
         answer = law.respond(path(steps), "stress")
         text = f"K {k}, H {h}, {steps} a leg"
         for leg, exact in enumerate(legs, 1):

@@ -14,23 +14,21 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
+import corota as ct
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.procedures.motion_start import initial_velocity
-from corota.model.materials import Elastic
-from corota.model.model import Model
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import ELEMENTS, cell
 
 SPIN, VELOCITY, DENSITY, THICKNESS = 1.7, np.array([0.3, -0.4]), 2.5, 0.4
 
 
-def block(element: str) -> Model:
+def block(element: str) -> ct.Model:
     """The block, in motion."""
-    mesh = meshes.distort(meshes.rectangle(3.0, 1.0, 3, 2, cell(element)), 0.2, seed=5)
-    model = Model(mesh)
-    material = Elastic(E=1e4, nu=0.3, rho=DENSITY)
+    mesh = ct.mesh.distort(ct.mesh.rectangle(3.0, 1.0, 3, 2, cell(element)), 0.2, seed=5)
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=1e4, nu=0.3, rho=DENSITY)
     model.section("all", element=element, material=material, thickness=THICKNESS)
     model.velocity(x=VELOCITY[0], y=VELOCITY[1], spin=SPIN)
     return model

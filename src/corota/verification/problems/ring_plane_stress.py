@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from scipy.optimize import brentq
 
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.problems.thick_cylinder_plastic import (
     INNER,
@@ -47,7 +47,7 @@ def nadai(c: float) -> tuple[float, float, Callable[[float], float]]:
     return -radial(INNER), float(2 * big * OUTER / YOUNG), radial
 
 
-def radial_stress(results: Results) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def radial_stress(results: ct.Results) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Radius, radial stress and volume of the points."""
     fields = results.frames[-1].fields[0]
     x, s = fields.points.reshape(-1, 2), fields.values["S"].reshape(-1, 4)

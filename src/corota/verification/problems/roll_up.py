@@ -12,9 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from corota.model.loads import NodalForce
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import Watch, cantilever, last_frames, run
 
@@ -29,18 +27,18 @@ EXACT = {
 MESHES = {"OPT": (200, 2), "Q4D": (200, 4)}
 
 
-def solved(element: str, nx: int, ny: int, watch: Watch | None = None, **keys: Any) -> Results:
+def solved(element: str, nx: int, ny: int, watch: Watch | None = None, **keys: Any) -> ct.Results:
     """Four steps of four increments."""
     model = cantilever(element, LENGTH, HEIGHT, nx, ny, E=YOUNG)
     tip = model.mesh.node_sets["right"]
     moment = 2.0 * np.pi * YOUNG * HEIGHT**3 / 12.0 / LENGTH / len(tip)
     steps: list[Any] = [
-        Static(loads=[NodalForce(tip, 2, part * moment)], increments=4) for part in EXACT
+        ct.Static(loads=[ct.NodalForce(tip, 2, part * moment)], increments=4) for part in EXACT
     ]
     return run(model, steps, observers=[watch] if watch else [], **keys)
 
 
-def places(results: Results, every: bool = False) -> np.ndarray:
+def places(results: ct.Results, every: bool = False) -> np.ndarray:
     """Position of the end over the length after each step, or in every frame."""
     mesh = results.mesh
     tip = mesh.node_sets["right"]

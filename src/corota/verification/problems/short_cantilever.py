@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from corota.model.steps import Static
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cantilever, edge_forces, linear, run
 
@@ -68,6 +68,6 @@ PROBLEM = Problem(
     "implementation of each element",
     certainty="computed independently",
     why="the last digit of the rows",
-    picture=lambda: Picture(run(model("Q8", 2), Static(nlgeom=False), fields=True), "S12"),
+    picture=lambda: Picture(run(model("Q8", 2), ct.Static(nlgeom=False), fields=True), "S12"),
     seconds=1.3,
 )

@@ -12,12 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.loads import BodyForce
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import DRILLING, cell, nearest, run
 
@@ -25,18 +20,18 @@ INNER, OUTER, SPEED = 0.1, 0.5, 200.0
 EXACT = {"inner": (3.209142857e-5, 22.464e6), "outer": (4.011428571e-5, 5.616e6)}
 
 
-def solved(element: str, n: int) -> Results:
+def solved(element: str, n: int) -> ct.Results:
     """Quarter of the annulus, `n` cells across."""
-    model = Model(meshes.annulus(INNER, OUTER, n, 2 * n, angle=90.0, cell=cell(element)))
-    model.section("all", element=element, material=Elastic(E=70e9, nu=0.3, rho=2700.0))
+    model = ct.Model(ct.mesh.annulus(INNER, OUTER, n, 2 * n, angle=90.0, cell=cell(element)))
+    model.section("all", element=element, material=ct.Elastic(E=70e9, nu=0.3, rho=2700.0))
     turn = 0.0 if element in DRILLING else None
     model.fix("start", x=None, rotation=turn)
     model.fix("end", y=None, rotation=turn)
-    model.loads.append(BodyForce("", "centrifugal", (SPEED**2, 0.0, 0.0)))
-    return run(model, Static(nlgeom=False), fields=True)
+    model.loads.append(ct.BodyForce("", "centrifugal", (SPEED**2, 0.0, 0.0)))
+    return run(model, ct.Static(nlgeom=False), fields=True)
 
 
-def growth(results: Results, edge: str) -> float:
+def growth(results: ct.Results, edge: str) -> float:
     """Mean radial displacement of an edge."""
     nodes = results.mesh.node_sets[edge]
     return float(np.hypot(*results.frames[-1].U[nodes].T).mean())

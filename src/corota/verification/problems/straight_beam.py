@@ -10,19 +10,12 @@ Rotations are clamped; triangles have the diagonal from the lower left.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Static
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import ELEMENTS, cell, linear, nearest, run
-
-if TYPE_CHECKING:
-    from corota.mesh import Mesh
 
 SHAPES = ("rectangles", "trapezoids", "parallelograms")
 #: Shift of the nodes, and the rows of the elements for the three shapes.
@@ -48,9 +41,9 @@ ROWS = [
 ]
 
 
-def slanted(shape: str, shift: float, element: str) -> Mesh:
+def slanted(shape: str, shift: float, element: str) -> ct.Mesh:
     """Six cells whose inner sides are slanted by `shift` either way."""
-    mesh = meshes.rectangle(6.0, 0.2, 6, 1, cell(element), "right")
+    mesh = ct.mesh.rectangle(6.0, 0.2, 6, 1, cell(element), "right")
     if shape != "rectangles":
         # Linear between the sides, so that mid-side nodes stay in the middle.
         signs = [1.0 if shape == "parallelograms" or i % 2 else -1.0 for i in range(7)]
@@ -60,10 +53,10 @@ def slanted(shape: str, shift: float, element: str) -> Mesh:
     return mesh
 
 
-def model(shape: str, shift: float, element: str) -> Model:
+def model(shape: str, shift: float, element: str) -> ct.Model:
     """The beam under unit tip shear."""
-    made = Model(slanted(shape, shift, element))
-    made.section("all", element=element, material=Elastic(E=1e7, nu=0.3), thickness=0.1)
+    made = ct.Model(slanted(shape, shift, element))
+    made.section("all", element=element, material=ct.Elastic(E=1e7, nu=0.3), thickness=0.1)
     made.fix("left", rotation=True)
     made.traction("right", y=1.0 / 0.02)
     return made
@@ -98,7 +91,7 @@ PROBLEM = Problem(
     certainty="computed independently",
     why="the last digit of the rows",
     picture=lambda: Picture(
-        run(model("trapezoids", 0.1, "Q4D"), Static(nlgeom=False), fields=True), "S11"
+        run(model("trapezoids", 0.1, "Q4D"), ct.Static(nlgeom=False), fields=True), "S11"
     ),
     seconds=0.2,
 )

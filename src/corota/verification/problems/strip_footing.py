@@ -14,12 +14,7 @@ from functools import cache
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.mesh import Mesh
-from corota.model.model import Model
-from corota.model.plasticity import Mises
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import DRILLING, cell, run
 
@@ -28,12 +23,12 @@ LIMIT, SIZE, PRESS = 2.0 + np.pi, 5.0, 0.06
 CASES = [("Q8R", False, 12, 0.025), ("Q4I", False, 16, 0.025), ("Q4", True, 16, 0.025)]
 
 
-def ground(element: str, n: int) -> Mesh:
+def ground(element: str, n: int) -> ct.Mesh:
     """`n` cells below the footing, then growing ones."""
     near = np.linspace(0.0, 1.0, n + 1)
     far = np.geomspace(1.0 / n, 0.6, n).cumsum()
     line = np.concatenate([near, 1.0 + far * (SIZE - 1.0) / far[-1]])
-    mesh = meshes.rectangle(1.0, 1.0, 2 * n, 2 * n, cell(element))
+    mesh = ct.mesh.rectangle(1.0, 1.0, 2 * n, 2 * n, cell(element))
     at = np.linspace(0.0, 1.0, 2 * n + 1)
     mesh.points[:, 0] = np.interp(mesh.points[:, 0], at, line)
     mesh.points[:, 1] = -np.interp(1.0 - mesh.points[:, 1], at, line)
@@ -41,11 +36,11 @@ def ground(element: str, n: int) -> Mesh:
 
 
 @cache
-def solved(element: str, mean: bool, n: int) -> Results:
+def solved(element: str, mean: bool, n: int) -> ct.Results:
     """Half of the ground, the footing pressed down."""
     mesh = ground(element, n)
-    model = Model(mesh)
-    law = Mises(E=1000.0, nu=0.3, yield_stress=3.0**0.5)
+    model = ct.Model(mesh)
+    law = ct.Mises(E=1000.0, nu=0.3, yield_stress=3.0**0.5)
     model.section("all", element=element, material=law, plane="strain", mean_dilatation=mean)
     turn = 0.0 if element in DRILLING else None
     for side in ("left", "right"):
@@ -53,11 +48,11 @@ def solved(element: str, mean: bool, n: int) -> Results:
     model.fix("bottom", rotation=turn)
     top = mesh.nodes_of("top")
     model.fix(top[mesh.points[top, 0] < 1.0 + 1e-9], x=None, y=-PRESS)
-    step = Static(nlgeom=False, first_increment=0.1, largest_increment=0.1)
+    step = ct.Static(nlgeom=False, first_increment=0.1, largest_increment=0.1)
     return run(model, step, fields=True)
 
 
-def pressures(results: Results) -> np.ndarray:
+def pressures(results: ct.Results) -> np.ndarray:
     """Mean pressure below the footing in each frame."""
     top = results.mesh.nodes_of("top")
     return np.array([-float(f.RF[top, 1].sum()) for f in results.frames])

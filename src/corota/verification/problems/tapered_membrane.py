@@ -10,10 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
-from corota.model.steps import Frequency
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cell, run
 
@@ -21,22 +18,22 @@ from corota.verification.models import cell, run
 EXACT = np.array([44.623, 130.03, 162.70, 246.05, 379.90, 391.44])
 
 
-def tapered(element: str, nx: int = 16, ny: int = 8) -> Model:
+def tapered(element: str, nx: int = 16, ny: int = 8) -> ct.Model:
     """The membrane on nx x ny cells."""
-    mesh = meshes.rectangle(1.0, 1.0, nx=nx, ny=ny, cell=cell(element))
+    mesh = ct.mesh.rectangle(1.0, 1.0, nx=nx, ny=ny, cell=cell(element))
     s, t = mesh.points.T.copy()
     mesh.points[:, 0] = 10.0 * s
     mesh.points[:, 1] = (2.5 * (1.0 - s) + 0.5 * s) * (2.0 * t - 1.0)
-    model = Model(mesh)
-    material = Elastic(E=200e9, nu=0.3, rho=8000.0)
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=200e9, nu=0.3, rho=8000.0)
     model.section("all", element=element, material=material, thickness=0.05)
     model.fix("left")
     return model
 
 
-def frequencies(model: Model, modes: int = 6) -> np.ndarray:
+def frequencies(model: ct.Model, modes: int = 6) -> np.ndarray:
     """Natural frequencies [1/time]."""
-    return np.asarray(run(model, Frequency(modes=modes)).modes[-1].factors)
+    return np.asarray(run(model, ct.Frequency(modes=modes)).modes[-1].factors)
 
 
 def measure() -> Iterator[Value]:

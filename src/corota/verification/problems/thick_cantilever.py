@@ -11,8 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import Watch, cantilever, edge_forces, last_frames, nearest, run
 
@@ -20,7 +19,7 @@ from corota.verification.models import Watch, cantilever, edge_forces, last_fram
 EXACT = {1.0: (-0.56737, 3.03767), 2.0: (-1.61730, 4.97497), 4.0: (-3.31596, 6.77129)}
 
 
-def solved(element: str, nx: int, watch: Watch | None = None, **keys: Any) -> Results:
+def solved(element: str, nx: int, watch: Watch | None = None, **keys: Any) -> ct.Results:
     """One step a load, on square cells."""
     model = cantilever(element, 10.0, 1.0, nx, nx // 10, E=1200.0, nu=0.3)
 
@@ -28,7 +27,7 @@ def solved(element: str, nx: int, watch: Watch | None = None, **keys: Any) -> Re
         return lambda x: (0.0, 1.5 * p * (1.0 - 4.0 * float(x[1]) ** 2))
 
     steps: list[Any] = [
-        Static(loads=edge_forces(model.mesh, "right", shear(p)), increments=2, tolerance=1e-10)
+        ct.Static(loads=edge_forces(model.mesh, "right", shear(p)), increments=2, tolerance=1e-10)
         for p in EXACT
     ]
     return run(model, steps, observers=[watch] if watch else [], **keys)

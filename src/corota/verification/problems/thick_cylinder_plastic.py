@@ -13,12 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
+import corota as ct
 from corota.model.materials import Material
-from corota.model.model import Model
-from corota.model.plasticity import Mises
-from corota.model.steps import Static
-from corota.results.results import Results
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import DRILLING, cell, nearest, run
 
@@ -36,23 +32,23 @@ STEEL = [(160.0, 0.111633), (180.0, 0.153985), (190.0, 0.20537)]
 
 def ring(
     element: str, n: int, plane: Any, law: Material, p: float, **options: Any
-) -> tuple[Results, float]:
+) -> tuple[ct.Results, float]:
     """Quarter of the ring under a pressure, `n` cells across; with the outer displacement."""
-    mesh = meshes.annulus(INNER, OUTER, n, 2 * n, 90.0, cell(element))
-    model = Model(mesh)
+    mesh = ct.mesh.annulus(INNER, OUTER, n, 2 * n, 90.0, cell(element))
+    model = ct.Model(mesh)
     model.section("all", element=element, material=law, plane=plane, **options)
     turn = 0.0 if element in DRILLING else None
     model.fix("start", x=None, y=0.0, rotation=turn)
     model.fix("end", x=0.0, y=None, rotation=turn)
     model.pressure("inner", p)
-    results = run(model, Static(nlgeom=False, increments=8), fields=True)
+    results = run(model, ct.Static(nlgeom=False, increments=8), fields=True)
     outer = mesh.nodes_of("outer")
     return results, float(np.linalg.norm(results.frames[-1].U[outer], axis=1).mean())
 
 
-def perfect(nu: float, yield_stress: float = YIELD) -> Mises:
+def perfect(nu: float, yield_stress: float = YIELD) -> ct.Mises:
     """The material of the ring, which does not harden."""
-    return Mises(E=YOUNG, nu=nu, yield_stress=yield_stress)
+    return ct.Mises(E=YOUNG, nu=nu, yield_stress=yield_stress)
 
 
 def hill(c: float, nu: float) -> tuple[float, float]:

@@ -20,7 +20,7 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.special import hyp2f1
 
-from corota.model.ramberg_osgood import RambergOsgood
+import corota as ct
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.problems.thick_cylinder_plastic import (
     ELEMENTS,
@@ -37,9 +37,9 @@ CASES = [(3.0, 4.0), (10.0, 4.0), (10.0, 20.0)]
 CELLS = (3, 6, 12, 24)
 
 
-def law(exponent: float) -> RambergOsgood:
+def law(exponent: float) -> ct.RambergOsgood:
     """The material of the cylinder."""
-    return RambergOsgood(E=YOUNG, nu=NU, yield_stress=YIELD, exponent=exponent, offset=OFFSET)
+    return ct.RambergOsgood(E=YOUNG, nu=NU, yield_stress=YIELD, exponent=exponent, offset=OFFSET)
 
 
 def exact(exponent: float, strain: float) -> tuple[float, float, float]:

@@ -13,13 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.loads import Amplitude
-from corota.model.materials import Elastic
-from corota.model.model import Model
+import corota as ct
 from corota.model.schemes import names
-from corota.model.steps import Dynamic
-from corota.results.results import Results
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import run
 
@@ -27,15 +22,15 @@ from corota.verification.models import run
 SCHEMES = tuple(name for name in names() if name != "central_difference")
 
 
-def solved(scheme: Any, n: int, **keys: Any) -> Results:
+def solved(scheme: Any, n: int, **keys: Any) -> ct.Results:
     """The strip after one unit of time in `n` increments."""
     time = np.linspace(0.0, 1.0, 2001)
-    model = Model(meshes.rectangle(4.0, 0.5, nx=8, ny=1))
-    model.section("all", element="Q4I", material=Elastic(E=1e4, nu=0.3, rho=1.0))
+    model = ct.Model(ct.mesh.rectangle(4.0, 0.5, nx=8, ny=1))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3, rho=1.0))
     model.fix("left")
-    model.amplitudes["wave"] = Amplitude(time, np.sin(np.pi * time) ** 4)
+    model.amplitudes["wave"] = ct.Amplitude(time, np.sin(np.pi * time) ** 4)
     model.gravity(y=-8.0, amplitude="wave")
-    step = Dynamic(period=1.0, increments=n, scheme=scheme, tolerance=1e-12)
+    step = ct.Dynamic(period=1.0, increments=n, scheme=scheme, tolerance=1e-12)
     return run(model, step, **keys)
 
 

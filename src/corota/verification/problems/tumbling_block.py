@@ -15,7 +15,7 @@ from functools import cache
 
 import numpy as np
 
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.motion_models import PULSE, block, drift, fly, rod
 
@@ -24,7 +24,7 @@ CASES = [("block", "Q4I"), ("block", "Q4D"), ("block", "OPT"), ("rod", "Q4D"), (
 
 
 @cache
-def flown(body: str, element: str, scheme: str = "energy_momentum") -> Results:
+def flown(body: str, element: str, scheme: str = "energy_momentum") -> ct.Results:
     """Five units of time in 250 increments."""
     return fly(BODIES[body](element), scheme=scheme)
 

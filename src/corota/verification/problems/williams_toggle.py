@@ -11,9 +11,7 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
-from corota.model.paths import ArcLength
-from corota.model.steps import Static
-from corota.results.results import Results
+import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.frame_models import williams_toggle
 from corota.verification.models import run
@@ -23,11 +21,11 @@ EXACT = [(33.847716, 0.2321569), (31.246220, 0.3915943)]
 
 
 @cache
-def solved(element: str = "Q8", **keys: Any) -> tuple[Results, int]:
+def solved(element: str = "Q8", **keys: Any) -> tuple[ct.Results, int]:
     """Path to a deflection of 0.7; with the node of the apex."""
     model, apex = williams_toggle(element)
-    path = ArcLength(displacement=(apex, "y", -0.7))
-    return run(model, Static(path=path), **keys), apex
+    path = ct.ArcLength(displacement=(apex, "y", -0.7))
+    return run(model, ct.Static(path=path), **keys), apex
 
 
 def measure() -> Iterator[Value]:

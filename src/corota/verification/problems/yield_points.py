@@ -14,10 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.model import Model
-from corota.model.plasticity import Mises
-from corota.model.steps import Static
+import corota as ct
 from corota.verification.catalogue import Curve, Problem, Value
 from corota.verification.models import last_frames, prescribe, run
 
@@ -31,13 +28,13 @@ def stresses(
 
     ``None`` leaves the square free across.
     """
-    model = Model(meshes.rectangle(1.0, 1.0, 1, 1))
-    law = Mises(E=YOUNG, nu=NU, yield_stress=YIELD, **hardening)
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, 1, 1))
+    law = ct.Mises(E=YOUNG, nu=NU, yield_stress=YIELD, **hardening)
     model.section("all", element="Q4I", material=law)
     points = model.mesh.points
     steps: list[Any] = []
     for xx, yy, angle in strains:
-        part = Model(model.mesh)
+        part = ct.Model(model.mesh)
         if yy is None:
             part.fix("left", y=None)
             part.fix("bottom", x=None)
@@ -45,7 +42,7 @@ def stresses(
         else:
             h = np.array([[xx, angle], [0.0, yy]], float)
             prescribe(part, np.arange(4), points @ h.T)
-        steps.append(Static(nlgeom=False, increments=10, supports=part.supports))
+        steps.append(ct.Static(nlgeom=False, increments=10, supports=part.supports))
     frames = last_frames(run(model, steps, fields=True))
     return np.array([f.fields[0].values["S"][0, 0, [0, 1, 3]] for f in frames])
 

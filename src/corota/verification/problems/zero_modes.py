@@ -11,9 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota import mesh as meshes
-from corota.model.materials import Elastic
-from corota.model.model import Model
+import corota as ct
 from corota.verification.catalogue import Problem, Value
 from corota.verification.models import DRILLING, ELEMENTS, assemble, cell, single
 from corota.verification.shapes import QUAD, TRIANGLE
@@ -22,7 +20,7 @@ from corota.verification.shapes import QUAD, TRIANGLE
 SKEW = np.array([[0.0, 0.0], [1.6, 0.1], [1.3, 1.2], [-0.1, 0.9]])
 
 
-def one(element: str) -> Model:
+def one(element: str) -> ct.Model:
     """A single cell."""
     kind = cell(element)
     n = int(kind[-1])
@@ -37,16 +35,16 @@ def one(element: str) -> Model:
     return single(element, x, E=1.0, nu=0.3)
 
 
-def two(element: str) -> Model:
+def two(element: str) -> ct.Model:
     """Two cells that share a side."""
     kind = cell(element)
-    mesh = meshes.mapped(SKEW, 1 if kind.startswith("tri") else 2, 1, kind)
-    model = Model(mesh)
-    model.section("all", element=element, material=Elastic(E=1.0, nu=0.3))
+    mesh = ct.mesh.mapped(SKEW, 1 if kind.startswith("tri") else 2, 1, kind)
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=1.0, nu=0.3))
     return model
 
 
-def zeros(model: Model, element: str) -> int:
+def zeros(model: ct.Model, element: str) -> int:
     """Eigenvalues of the stiffness below 1e-10 of the largest."""
     width = 3 if element in DRILLING else 2
     _, stiffness = assemble(model, np.zeros((model.mesh.n_nodes, width)), nlgeom=False)
