@@ -10,74 +10,92 @@ from corota.cli.reading import is_result, read_input
 from corota.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from corota.cli.terminal import Terminal
     from corota.results.history import History
     from corota.results.results import Results
+
+    #: Draws by a function of :mod:`corota.plots` into JOB_ENDING, or the file of the user.
+    Draw = Callable[..., None]
 
 
 def run(args: Any, terminal: Terminal) -> int:
     """Draw the requested picture and print its file."""
     from corota import plots
 
-    with plots.width_of(args.width):
-        return _run(args, terminal)
-
-
-def _run(args: Any, terminal: Terminal) -> int:
-    from corota import plots
-
     args.elements, args.parameters, args.lenient, args.allow_include = [], [], True, True
     args.as_written = False
     source = Path(args.file)
-    if not is_result(args.file):
-        if not args.model and source.suffix.lower() == ".inp":
+    if args.last_iterate and is_result(args.file):
+        source = _iterate(source)
+
+    def draw(
+        ending: str, function: Any, *subject: Any, dpi: int = args.dpi, **options: Any
+    ) -> None:
+        path = Path(args.output or f"{source.stem}_{ending}")
+        function(*subject, path=path, dpi=dpi, **options)
+        terminal.line(f"wrote {path}")
+        terminal.record({"event": "picture", "file": str(path)})
+
+    with plots.width_of(args.width):
+        if is_result(args.file):
+            from corota.io.result_reader import read_results
+
+            with read_results(source) as results:
+                _draw_results(args, source, results, terminal, draw)
+        elif not args.model and source.suffix.lower() == ".inp":
             raise InputError(
                 f"{source}: a deck has no results; draw them from {source.stem}.vtkhdf, "
                 "or the model itself with --model"
             )
-        subject = read_input(args.file, args)
-        path = Path(args.output or f"{source.stem}_model.png")
-        plots.model(subject, edges=args.edges, path=path, dpi=args.dpi)
-        return _tell(path, terminal)
-    from corota.io.result_reader import read_results
+        else:
+            draw("model.png", plots.model, read_input(args.file, args), edges=args.edges)
+    return 0
 
-    if args.last_iterate:
-        source = _iterate(source)
-    with read_results(source) as results:
-        if args.model:
-            path = Path(args.output or f"{source.stem}_model.png")
-            plots.model(results.model, edges=args.edges, path=path, dpi=args.dpi)
-            return _tell(path, terminal)
-        if args.modes or args.response or args.energies:
-            return _of_motion(args, source, results, terminal)
-        if args.forces or args.section or args.diagram:
-            return _section_forces(args, source, results, terminal)
-        if args.principal or args.flow:
-            return _stress_lines(args, source, results, terminal)
-        if args.curve:
-            path = Path(args.output or f"{source.stem}_curve.png")
-            y, x = _axes(args.curve, results)
-            plots.curve(y, x, path=path, dpi=args.dpi)
-            return _tell(path, terminal)
-        if args.contact is not None:
-            path = Path(args.output or f"{source.stem}_contact.png")
-            plots.contact_line(results, args.contact, frame=args.frame, path=path, dpi=args.dpi)
-            return _tell(path, terminal)
-        if (args.field or "").upper() == "CSTATUS":
-            path = Path(args.output or f"{source.stem}_CSTATUS.png")
-            plots.status(results, frame=args.frame, scale=args.scale, path=path, dpi=args.dpi)
-            return _tell(path, terminal)
+
+def _draw_results(
+    args: Any, source: Path, results: Results, terminal: Terminal, draw: Draw
+) -> None:
+    from corota import plots
+
+    at: dict[str, Any] = {"frame": args.frame, "scale": args.scale}
+    if args.model:
+        draw("model.png", plots.model, results.model, edges=args.edges)
+    elif args.modes:
+        _draw_modes(source, results, draw)
+    elif args.response:
+        draw("response.png", plots.response, results)
+    elif args.energies:
+        draw("energies.png", plots.energies, results)
+    elif args.forces:
+        found = results.member_forces(frame=args.frame)
+        draw(f"{args.forces}.png", plots.section_forces, found, args.forces, scale=args.scale)
+    elif args.diagram:
+        x1, y1, x2, y2, width = args.diagram
+        diagram = results.section_diagram([(x1, y1), (x2, y2)], width, frame=args.frame)
+        draw("diagram.png", plots.section_diagram, diagram)
+    elif args.section:
+        _draw_section(args, results, terminal, draw)
+    elif args.principal:
+        draw("principal.png", plots.principal, results, **at)
+    elif args.flow:
+        draw("flow.png", plots.flow, results, args.flow, **at)
+    elif args.curve:
+        y, x = _axes(args.curve, results)
+        draw("curve.png", plots.curve, y, x)
+    elif args.contact is not None:
+        draw("contact.png", plots.contact_line, results, args.contact, frame=args.frame)
+    elif args.field.upper() == "CSTATUS":
+        draw("CSTATUS.png", plots.status, results, **at)
+    else:
         field = args.field or ("MISES" if "MISES" in results.variables() else "U")
         options = {"scale": args.scale, "per_cell": args.per_cell, "edges": args.edges}
-        moving = args.animate or (args.output or "").lower().endswith((".gif", ".mp4", ".html"))
-        if moving:
-            path = Path(args.output or f"{source.stem}_{field}.gif")
-            plots.animate(results, field, path=path, dpi=min(args.dpi, 110), **options)
+        if args.animate or (args.output or "").lower().endswith((".gif", ".mp4", ".html")):
+            draw(f"{field}.gif", plots.animate, results, field, dpi=min(args.dpi, 110), **options)
         else:
-            path = Path(args.output or f"{source.stem}_{field}.png")
             options |= {"frame": args.frame, "plastic": args.plastic or None}
-            plots.contour(results, field, path=path, dpi=args.dpi, **options)
-    return _tell(path, terminal)
+            draw(f"{field}.png", plots.contour, results, field, **options)
 
 
 def _iterate(source: Path) -> Path:
@@ -91,61 +109,30 @@ def _iterate(source: Path) -> Path:
     return beside
 
 
-def _of_motion(args: Any, source: Path, results: Results, terminal: Terminal) -> int:
-    """Modes, response or energies; modes are in a separate file."""
+def _draw_modes(source: Path, results: Results, draw: Draw) -> None:
+    """Modes, which are in a file of their own beside the results, if there is one."""
     from corota import plots
     from corota.io.result_reader import read_results
 
-    kind = next(k for k in ("modes", "response", "energies") if getattr(args, k))
-    path = Path(args.output or f"{source.stem}_{kind}.png")
     beside = source.with_name(f"{source.stem}.modes{source.suffix}")
-    draw = getattr(plots, kind)
-    if kind == "modes" and beside.exists():
-        with read_results(beside) as found:
-            draw(found, path=path, dpi=args.dpi)
-    else:
-        draw(results, path=path, dpi=args.dpi)
-    return _tell(path, terminal)
+    if not beside.exists():
+        draw("modes.png", plots.modes, results)
+        return
+    with read_results(beside) as found:
+        draw("modes.png", plots.modes, found)
 
 
-def _stress_lines(args: Any, source: Path, results: Results, terminal: Terminal) -> int:
-    """Principal stresses as crosses, or the flow of force."""
-    from corota import plots
-
-    options = {"frame": args.frame, "scale": args.scale, "dpi": args.dpi}
-    if args.principal:
-        path = Path(args.output or f"{source.stem}_principal.png")
-        plots.principal(results, path=path, **options)
-    else:
-        path = Path(args.output or f"{source.stem}_flow.png")
-        plots.flow(results, args.flow, path=path, **options)
-    return _tell(path, terminal)
-
-
-def _section_forces(args: Any, source: Path, results: Results, terminal: Terminal) -> int:
-    """Diagrams of line elements, across planar ones, or the forces of a cut over the time."""
+def _draw_section(args: Any, results: Results, terminal: Terminal, draw: Draw) -> None:
+    """Forces of a cut over the time; those of the frame are printed."""
     from corota import plots
     from corota.results.section import Cut
 
-    if args.forces:
-        path = Path(args.output or f"{source.stem}_{args.forces}.png")
-        found = results.member_forces(frame=args.frame)
-        plots.section_forces(found, args.forces, scale=args.scale, path=path, dpi=args.dpi)
-        return _tell(path, terminal)
-    if args.diagram:
-        path = Path(args.output or f"{source.stem}_diagram.png")
-        x1, y1, x2, y2, width = args.diagram
-        diagram = results.section_diagram([(x1, y1), (x2, y2)], width, frame=args.frame)
-        plots.section_diagram(diagram, path=path, dpi=args.dpi)
-        return _tell(path, terminal)
-    path = Path(args.output or f"{source.stem}_section.png")
     x1, y1, x2, y2 = args.section
     cut = Cut(results, (x1, y1), (x2, y2))
     one = cut.forces(args.frame)
     terminal.line(f"N {one.N:.7g}  V {one.V:.7g}  M {one.M:.7g}  ({one.method})")
     terminal.record({"event": "section", "N": one.N, "V": one.V, "M": one.M, "method": one.method})
-    plots.section_history(cut, path=path, dpi=args.dpi)
-    return _tell(path, terminal)
+    draw("section.png", plots.section_history, cut)
 
 
 def _axes(text: str, results: Results) -> tuple[History, History]:
@@ -171,9 +158,3 @@ def _history(text: str, results: Results) -> History:
         found.name = f"{found.name.partition(' at ')[0]} at node {where}"
         return found
     return results.history(name, at=where)
-
-
-def _tell(path: Path, terminal: Terminal) -> int:
-    terminal.line(f"wrote {path}")
-    terminal.record({"event": "picture", "file": str(path)})
-    return 0

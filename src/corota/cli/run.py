@@ -245,7 +245,6 @@ def carry_out(
 
 @contextlib.contextmanager
 def _served(files: JobFiles, name: str, terminal: Terminal, port: int | None) -> Iterator[None]:
-    """Serve the page during the run, if requested."""
     if port is None:
         yield
         return
@@ -262,7 +261,6 @@ def _served(files: JobFiles, name: str, terminal: Terminal, port: int | None) ->
 
 
 def _tell_checkpoint(files: JobFiles, terminal: Terminal) -> None:
-    """Print how to resume, if there is a checkpoint."""
     path = files.folder / f"{files.name}.ckpt"
     if files.error is None and files.checkpointed is not None and path.exists():
         terminal.line(

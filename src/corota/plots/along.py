@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from corota.plots.figure import INK, PALE, figure_of, finish, look
+from corota.plots.figure import chart, figure_of, finish, look
 from corota.results.variables import described, labeled
 
 if TYPE_CHECKING:
@@ -43,8 +43,6 @@ def along(
         figure, ax = figure_of(ax, 5.2, 3.7, shown=path is None)
         for name in names:
             ax.plot(line.distance, line.values(name), linewidth=1.4, label=name, zorder=3)
-        ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
-        ax.grid(True, color="#e6e9ee", linewidth=0.6)
         length = units.label("length")
         ax.set_xlabel("distance along the line" + (f" [{length}]" if length else ""))
         if len(names) == 1:
@@ -54,7 +52,6 @@ def along(
             ax.set_ylabel(f"[{of.pop()}" if len(of) == 1 and of != {""} else "")
             ax.legend()
         ax.margins(x=0.0)
-        ax.tick_params(length=2.5, colors=INK)
-        ax.ticklabel_format(style="sci", scilimits=(-3, 4))
+        chart(ax)
         ax.set_title(line.results.model.name, loc="left")
         return finish(figure, path, dpi)

@@ -16,7 +16,7 @@ import numpy as np
 from corota.errors import InputError
 from corota.io.atomic_file import full
 from corota.names import choose
-from corota.plots.contour import Drawing, frame_title, label_bar, paint
+from corota.plots.contour import Drawing, color_bar, frame_title, label_bar, paint
 from corota.plots.figure import (
     extent_size,
     fit_texts,
@@ -24,6 +24,7 @@ from corota.plots.figure import (
     look,
     new_figure,
     picture_path,
+    plane_axes,
 )
 from corota.results import variables as vf
 
@@ -152,20 +153,11 @@ def animate(
             figure = new_figure(width, height, shown=False)
             figure.set_dpi(dpi)
             ax = figure.add_subplot()
-            pad = 0.04 * float((high - low).max())
             painted = paint(ax, mpl, drawing, int(chosen[0]), scale, edges, True, limits)
-            ax.set_xlim(low[0] - pad, high[0] + pad)
-            ax.set_ylim(low[1] - pad, high[1] + pad)
+            plane_axes(ax, low, high, 0.04 * float((high - low).max()), results.model.unit_system)
             # The longest title determines the layout of all.
             ax.set_title(frame_title(results, int(chosen[-1]), scale), loc="left")
-            bar = figure.colorbar(
-                painted,
-                ax=ax,
-                location="bottom" if below else "right",
-                shrink=0.75 if below else 0.8,
-                aspect=38 if below else 28,
-                pad=0.04,
-            )
+            bar = color_bar(figure, ax, painted, below)
             label_bar(bar, name, per_cell, limits, results.model.unit_system)
             fit_texts(figure)
             stage = _Stage(figure, ax)

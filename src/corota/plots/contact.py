@@ -10,7 +10,17 @@ import numpy as np
 from corota.errors import InputError
 from corota.model.contact import ContactPair, edges_or_nodes
 from corota.plots.contour import frame_title
-from corota.plots.figure import COLORS, INK, PALE, extent_size, figure_of, finish, label_axes, look
+from corota.plots.figure import (
+    COLORS,
+    INK,
+    PALE,
+    body_figure,
+    chart,
+    figure_of,
+    finish,
+    look,
+    plane_axes,
+)
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import outline
 
@@ -93,13 +103,11 @@ def contact_line(
             pad = 0.1 * (high - low) or 0.1 * float(runs[0][1][-1])
             ax.set_xlim(low - pad, high + pad)
         ax.axhline(0.0, color=INK, linewidth=0.6, zorder=1)
-        ax.grid(True, color="#e6e9ee", linewidth=0.6)
-        ax.set_axisbelow(True)
         units = results.model.unit_system
         length, stress = (units.label(d) or d for d in ("length", "force/length^2"))
         ax.set_xlabel(f"along the slave surface [{length}]")
         ax.set_ylabel(f"traction [{stress}]")
-        ax.ticklabel_format(style="sci", scilimits=(-3, 4))
+        chart(ax, zero=False)
         ax.legend()
         at_time = f"{chosen.name}: step {state.step}, time {state.time:.6g}"
         ax.set_title(title if title is not None else at_time, loc="left")
@@ -142,8 +150,7 @@ def status(
     with look():
         from matplotlib.collections import LineCollection
 
-        width, height, _ = extent_size(low, high)
-        figure, ax = figure_of(ax, width, height, shown=path is None)
+        figure, ax, _ = body_figure(ax, low, high, path is None)
         drawn = outline(mesh, positions)
         drawn += [ends for c in mesh.cells if c.kind == "line2" for ends in positions[c.nodes]]
         ax.add_collection(LineCollection(drawn, colors=INK, linewidths=0.8))
@@ -156,10 +163,7 @@ def status(
             if len(at):
                 ax.plot(*positions[at].T, "o", color=color, markersize=size, label=name, zorder=3)
         pad = 0.06 * float((high - low).max())
-        ax.set_xlim(low[0] - pad, high[0] + pad)
-        ax.set_ylim(low[1] - pad, high[1] + pad)
-        ax.set_aspect("equal")
-        label_axes(ax, results.model.unit_system)
+        plane_axes(ax, low, high, pad, results.model.unit_system)
         ax.legend(loc="best")
         ax.set_title(title if title is not None else frame_title(results, frame, scale), loc="left")
         return finish(figure, path, dpi)

@@ -10,7 +10,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.plots import palette
-from corota.plots.figure import INK, PALE, extent_size, figure_of, finish, label_axes, look
+from corota.plots.figure import INK, PALE, body_figure, finish, look, plane_axes
 from corota.plots.lines import draw_links
 from corota.plots.plastic import draw_boundary
 from corota.plots.rigid import draw_rigid, with_rigid
@@ -200,20 +200,12 @@ def contour(
         positions = results.mesh.points + scale * state.U
         every = np.concatenate([results.mesh.points, positions]) if undeformed else positions
         low, high = with_rigid(results.model, every.min(axis=0), every.max(axis=0), state, scale)
-        width, height, below = extent_size(low, high)
-        figure, ax = figure_of(ax, width, height, shown=path is None)
+        figure, ax, below = body_figure(ax, low, high, path is None)
         painted = paint(ax, mpl, drawing, frame, scale, edges, undeformed, limits)
         flows = plastic or (plastic is None and name == "PEEQ")
         if flows:
             draw_boundary(ax, results, frame, scale)
-        bar = figure.colorbar(
-            painted,
-            ax=ax,
-            location="bottom" if below else "right",
-            shrink=0.75 if below else 0.8,
-            aspect=38 if below else 28,
-            pad=0.04,
-        )
+        bar = color_bar(figure, ax, painted, below)
         shown = drawing.range(frame)
         if not per_cell and len(drawing.parts) and not len(drawing.lines[0]):
             found = results.extremes(name, frame, at="nodes")
@@ -221,11 +213,15 @@ def contour(
         points = "" if per_cell else point_range(results, name, frame)
         more = points + ("; black line: boundary of the flow" if flows else "")
         label_bar(bar, name, per_cell, shown, results.model.unit_system, more)
-        pad = 0.04 * float((high - low).max())
-        ax.set_xlim(low[0] - pad, high[0] + pad)
-        ax.set_ylim(low[1] - pad, high[1] + pad)
+        plane_axes(ax, low, high, 0.04 * float((high - low).max()), results.model.unit_system)
         ax.set_title(title if title is not None else frame_title(results, frame, scale), loc="left")
         return finish(figure, path, dpi)
+
+
+def color_bar(figure: Any, ax: Any, painted: Any, below: bool) -> Any:
+    """Color bar of what was painted into axes, below or beside them."""
+    place, shrink, aspect = ("bottom", 0.75, 38) if below else ("right", 0.8, 28)
+    return figure.colorbar(painted, ax=ax, location=place, shrink=shrink, aspect=aspect, pad=0.04)
 
 
 def without_rounding(low: float, high: float) -> tuple[float, float]:
@@ -352,9 +348,6 @@ def paint(
     )
     draw_links(ax, results.model, positions)
     draw_rigid(ax, results.model, results.frame(frame), scale)
-    ax.set_aspect("equal")
-    label_axes(ax, results.model.unit_system)
-    ax.tick_params(length=2.5)
     painted = ScalarMappable(
         norm=BoundaryNorm(levels, _between(colors, norm, levels).N),
         cmap=_between(colors, norm, levels),

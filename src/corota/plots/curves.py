@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.model.units import Units
-from corota.plots.figure import INK, PALE, figure_of, finish, look
+from corota.plots.figure import PALE, chart, figure_of, finish, look
 from corota.plots.path import draw_path, has_stability
 from corota.results.variables import described, dimension, labeled
 
@@ -72,10 +72,7 @@ def curve(
                 clip_on=False,
                 zorder=3,
             )
-        ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
         ax.axvline(0.0, color=PALE, linewidth=0.6, zorder=1)
-        ax.grid(True, color="#e6e9ee", linewidth=0.6)
-        ax.set_axisbelow(True)
         ax.set_xlabel(axis_label(x.name, units))
         if len(many) == 1:
             ax.set_ylabel(axis_label(many[0].name, units))
@@ -83,8 +80,7 @@ def curve(
             ax.set_ylabel(shared_label([one.name for one in many], units))
             ax.legend()
         ax.margins(0.03)
-        ax.tick_params(length=2.5, colors=INK)
-        ax.ticklabel_format(style="sci", scilimits=(-3, 4))
+        chart(ax)
         ax.set_title(x.results.model.name, loc="left")
         return finish(figure, path, dpi)
 

@@ -44,7 +44,7 @@ STYLE = {
 }
 #: Colors of lines.
 COLORS = LINES
-INK, PALE = "#20242b", "#8792a2"
+INK, PALE, GRID = "#20242b", "#8792a2", "#e6e9ee"
 #: Colors of tension and compression, and of positive and negative section forces.
 TENSION, COMPRESSION = COLORS[1], COLORS[0]
 #: Width of new figures [inch]; 0 for that of each kind of picture.
@@ -146,6 +146,14 @@ def figure_of(ax: Any, width: float, height: float, shown: bool) -> tuple[Any, A
     return figure, figure.add_subplot()
 
 
+def body_figure(
+    ax: Any, low: Any, high: Any, shown: bool, below: float = 1.75
+) -> tuple[Any, Any, bool]:
+    """Figure and axes for an extent, and whether a color bar lies below; see `extent_size`."""
+    width, height, lying = extent_size(low, high, below)
+    return (*figure_of(ax, width, height, shown), lying)
+
+
 def picture_path(path: str | PathLike[str], formats: tuple[str, ...] = FORMATS) -> Path:
     """Check the ending of a picture's name.
 
@@ -196,11 +204,26 @@ def _plain_powers(figure: Any) -> None:
             axis.set_minor_formatter(LogFormatter(minor_thresholds=minor.minor_thresholds))
 
 
-def label_axes(ax: Any, units: Units) -> None:
-    """Label x and y, with the unit of length if given."""
+def plane_axes(ax: Any, low: Any, high: Any, pad: float, units: Units) -> None:
+    """Fit axes of equal scales to an extent, shape (2,) each, with a margin; label them."""
+    ax.set_xlim(low[0] - pad, high[0] + pad)
+    ax.set_ylim(low[1] - pad, high[1] + pad)
+    ax.set_aspect("equal")
     unit = f" [{units.length}]" if units.length else ""
     ax.set_xlabel(f"x{unit}")
     ax.set_ylabel(f"y{unit}")
+    ax.tick_params(length=2.5)
+
+
+def chart(ax: Any, zero: bool = True, powers: str = "both") -> None:
+    """Style axes of curves: pale grid, line of zero, large numbers of `powers` by powers of ten."""
+    if zero:
+        ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
+    ax.grid(True, color=GRID, linewidth=0.6)
+    ax.set_axisbelow(True)
+    ax.tick_params(length=2.5, colors=INK)
+    if powers:
+        ax.ticklabel_format(style="sci", scilimits=(-3, 4), axis=powers)
 
 
 def finish(figure: Any, path: str | PathLike[str] | None, dpi: float) -> Any:

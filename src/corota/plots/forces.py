@@ -14,12 +14,12 @@ from corota.plots.figure import (
     INK,
     PALE,
     TENSION,
-    extent_size,
-    figure_of,
+    body_figure,
+    chart,
     finish,
-    label_axes,
     look,
     new_figure,
+    plane_axes,
 )
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import outline
@@ -98,8 +98,7 @@ def section_forces(
     with look():
         from matplotlib.collections import LineCollection, PolyCollection
 
-        width, height, _ = extent_size(low, high, below=1.2)
-        figure, ax = figure_of(ax, width, height, shown=path is None)
+        figure, ax, _ = body_figure(ax, low, high, path is None, below=1.2)
         ax.add_collection(LineCollection(outline(mesh, positions), colors=PALE, linewidths=0.7))
         draw_rigid(ax, results.model, results.frame(members.frame), scale)
         for positive, color in ((True, TENSION), (False, COMPRESSION)):
@@ -113,12 +112,7 @@ def section_forces(
         ax.add_collection(LineCollection(list(tops), colors=INK, linewidths=0.6))
         ax.add_collection(LineCollection(list(ends), colors=INK, linewidths=1.8, capstyle="round"))
         _extremes(ax, ends, tops, values, largest)
-        pad = 0.07 * size
-        ax.set_xlim(low[0] - pad, high[0] + pad)
-        ax.set_ylim(low[1] - pad, high[1] + pad)
-        ax.set_aspect("equal")
-        label_axes(ax, units)
-        ax.tick_params(length=2.5)
+        plane_axes(ax, low, high, 0.07 * size, units)
         what, of = NAMES[name]
         unit = units.label(of)
         head = f"{name}: {what}" + (f" [{unit}]" if unit else "")
@@ -143,7 +137,6 @@ def _smooth(left: Floats, nodes: Ints) -> Floats:
 
 
 def _pieces(ends: Floats, tops: Floats, values: Floats) -> list[Floats]:
-    """Outlines of the positive parts of the diagrams."""
     found = []
     for axis, top, (first, last) in zip(ends, tops, values, strict=True):
         if first <= 0.0 and last <= 0.0:
@@ -273,14 +266,10 @@ def _three(
                     ax.fill_between(
                         x, 0.0, shown, keep, color=color, alpha=0.35, lw=0.0, interpolate=True
                     )
-            ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
-            ax.grid(True, color="#e6e9ee", linewidth=0.6)
-            ax.set_axisbelow(True)
             unit = units.label(of)
             ax.set_ylabel(f"{what}\n{name}" + (f" [{unit}]" if unit else ""))
             ax.margins(x=0.0, y=0.12)
-            ax.tick_params(length=2.5, colors=INK)
-            ax.ticklabel_format(style="sci", scilimits=(-3, 4))
+            chart(ax)
         panels[-1].set_xlabel(along)
         panels[0].set_title(title, loc="left")
         figure.align_ylabels(panels)

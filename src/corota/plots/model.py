@@ -12,15 +12,7 @@ from corota.arrays import Floats, Ints
 from corota.mesh import EDGES, Mesh
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, applied
 from corota.model.model import Model
-from corota.plots.figure import (
-    COLORS,
-    INK,
-    extent_size,
-    figure_of,
-    finish,
-    label_axes,
-    look,
-)
+from corota.plots.figure import COLORS, INK, body_figure, finish, look, plane_axes
 from corota.plots.lines import draw_lines
 from corota.plots.rigid import draw_rigid, with_rigid
 from corota.plots.surface import edge_lines, outline, surface
@@ -80,8 +72,8 @@ def model(
     with look():
         from matplotlib.collections import LineCollection
 
-        width, height, _ = extent_size(low - 0.1 * size, high + 0.1 * size)
-        figure, ax = figure_of(ax, width, height, shown=path is None)
+        margin = 0.1 * size
+        figure, ax, _ = body_figure(ax, low - margin, high + margin, path is None)
         _sections(ax, subject)
         if mesh.n_cells <= 4000 if edges is None else edges:
             ax.add_collection(
@@ -96,12 +88,7 @@ def model(
             _sets(ax, subject)
         _supports(ax, subject, size)
         _loads(ax, subject, size)
-        ax.set_aspect("equal")
-        pad = 0.10 * size
-        ax.set_xlim(low[0] - pad, high[0] + pad)
-        ax.set_ylim(low[1] - pad, high[1] + pad)
-        label_axes(ax, subject.unit_system)
-        ax.tick_params(length=2.5)
+        plane_axes(ax, low, high, margin, subject.unit_system)
         counts = f"{mesh.n_nodes:,} nodes, {mesh.n_cells:,} elements"
         ax.set_title(title if title is not None else f"{subject.name}: {counts}", loc="left")
         handles, labels = ax.get_legend_handles_labels()
@@ -280,7 +267,6 @@ def _edge_load(ax: Any, subject: Model, load: EdgeLoad, size: float) -> None:
 def _arrow(
     ax: Any, at: Any, vector: Any, color: str, tail: bool = False, wide: bool = False
 ) -> None:
-    """Draw an arrow with its head or its tail at a point."""
     at, vector = np.asarray(at, dtype=float), np.asarray(vector, dtype=float)
     start, end = (at, at + vector) if tail else (at - vector, at)
     if not tail:  # loads pull or push: show the force where it can be seen, outside

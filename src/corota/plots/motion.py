@@ -10,7 +10,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.plots.contour import Drawing, paint
-from corota.plots.figure import COLORS, INK, PALE, finish, look, new_figure
+from corota.plots.figure import COLORS, INK, PALE, chart, finish, look, new_figure, plane_axes
 from corota.results.variables import labeled
 
 if TYPE_CHECKING:
@@ -77,9 +77,7 @@ def modes(results: Results, *, path: str | PathLike[str] | None = None, dpi: flo
         for place, index in enumerate(frames):
             ax = figure.add_subplot(rows, columns, place + 1)
             paint(ax, mpl, drawing, index, scales[index], None, True, None)
-            pad = 0.04 * float((high - low).max())
-            ax.set_xlim(low[0] - pad, high[0] + pad)
-            ax.set_ylim(low[1] - pad, high[1] + pad)
+            plane_axes(ax, low, high, 0.04 * float((high - low).max()), results.model.unit_system)
             ax.set_axis_off()
             ax.set_title(_mode_title(results.frames[index]), loc="left")
         return finish(figure, path, dpi)
@@ -138,9 +136,7 @@ def response(
         lower.set_ylim(-185.0, 185.0)
         lower.set_yticks([-180, -90, 0, 90, 180])
         for ax in (upper, lower):
-            ax.grid(True, color="#e6e9ee", linewidth=0.6)
-            ax.set_axisbelow(True)
-            ax.tick_params(length=2.5, colors=INK)
+            chart(ax, zero=False, powers="")
         upper.set_title(results.model.name, loc="left")
         return finish(figure, path, dpi)
 
@@ -194,10 +190,6 @@ def energies(
         lower.set_ylabel(labeled("balance", units, "energy"))
         lower.set_xlabel(labeled("time", units))
         for ax in (upper, lower):
-            ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
-            ax.grid(True, color="#e6e9ee", linewidth=0.6)
-            ax.set_axisbelow(True)
-            ax.tick_params(length=2.5, colors=INK)
-            ax.ticklabel_format(style="sci", scilimits=(-3, 4), axis="y")
+            chart(ax, powers="y")
         upper.set_title(results.model.name, loc="left")
         return finish(figure, path, dpi)

@@ -14,12 +14,11 @@ from corota.plots.figure import (
     COMPRESSION,
     INK,
     TENSION,
-    extent_size,
-    figure_of,
+    body_figure,
     finish,
-    label_axes,
     look,
     page_width,
+    plane_axes,
 )
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import outline, surface
@@ -224,18 +223,13 @@ def _body(
     from matplotlib.collections import LineCollection
 
     low, high = positions.min(axis=0), positions.max(axis=0)
-    width, height, _ = extent_size(low, high, below=1.6)
-    figure, ax = figure_of(ax, width, height, shown=path is None)
+    figure, ax, _ = body_figure(ax, low, high, path is None, below=1.6)
     ax.add_collection(
         LineCollection(outline(results.mesh, positions), colors=INK, linewidths=0.8, zorder=3)
     )
     draw_rigid(ax, results.model, results.frame(frame), scale)
     pad = 0.04 * float((high - low).max())
-    ax.set_xlim(low[0] - pad, high[0] + pad)
-    ax.set_ylim(low[1] - pad, high[1] + pad)
-    ax.set_aspect("equal")
-    label_axes(ax, results.model.unit_system)
-    ax.tick_params(length=2.5)
+    plane_axes(ax, low, high, pad, results.model.unit_system)
     return figure, ax
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.mesh import EDGES
-from corota.mesh.shape_functions import shape_functions
+from corota.mesh.shape_functions import edge_functions, shape_functions
 
 if TYPE_CHECKING:
     from corota.arrays import Bools, Floats, Ints
@@ -102,8 +102,7 @@ def _curves(nodes: list[Ints], positions: Floats, parts: int) -> list[Floats]:
             lines.append(positions[group])
             continue
         t = np.linspace(-1.0, 1.0, parts + 1)
-        shape = np.stack([0.5 * t * (t - 1), 0.5 * t * (t + 1), 1 - t * t], axis=1)
-        lines.append(np.einsum("mk,nkd->nmd", shape, positions[group]))
+        lines.append(np.einsum("mk,nkd->nmd", edge_functions(t)[0], positions[group]))
     return lines
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from corota.errors import InputError
-from corota.plots.figure import INK, figure_of, finish, look
+from corota.plots.figure import chart, figure_of, finish, look
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -86,12 +86,10 @@ def sweep(
                 clip_on=False,
                 zorder=3,
             )
-        ax.grid(True, color="#e6e9ee", linewidth=0.6)
-        ax.set_axisbelow(True)
         ax.set_xlabel(x)
         ax.set_ylabel(y)
         if by:
             ax.legend()
         ax.margins(0.03)
-        ax.tick_params(length=2.5, colors=INK)
+        chart(ax, zero=False, powers="")
         return finish(figure, path, dpi)
