@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from corota.analysis.increments import CUT, Increments
 from corota.errors import ConvergenceError, Interrupted
@@ -53,7 +53,7 @@ class Accepted:
     scalars: dict[str, float]
 
 
-class Stepper(Protocol):
+class Stepper(ABC):
     """The part of a step that depends on the procedure.
 
     Attributes
@@ -62,26 +62,28 @@ class Stepper(Protocol):
         Name of the procedure's state in checkpoints; empty where it cannot be resumed.
     advice : str
         Advice where the step has used all its increments; empty where it has no such limit.
+    remembered : tuple of str
+        Attributes that a checkpoint holds beside the committed state.
+    taken : int
+        Increments so far.
     """
 
-    kind: str
-    advice: str
+    kind = advice = ""
+    remembered: ClassVar[tuple[str, ...]] = ()
+    taken = 0
+    state: State
 
     @property
+    @abstractmethod
     def finished(self) -> bool:
         """Whether the step is at its end."""
-        ...
 
     @property
-    def taken(self) -> int:
-        """Increments so far."""
-        ...
-
-    @property
+    @abstractmethod
     def where(self) -> str:
         """Progress of the step in words."""
-        ...
 
+    @abstractmethod
     def advance(self) -> Accepted | None:
         """Take increments up to the next one for output; None at the end of the step.
 
@@ -90,11 +92,16 @@ class Stepper(Protocol):
         ConvergenceError
             With the reason, when no smaller increment helps.
         """
-        ...
 
     def memory(self) -> dict[str, object]:
         """State of the stepper beside the committed state, by name."""
-        ...
+        return {name: getattr(self, name) for name in self.remembered}
+
+    def resume(self) -> None:
+        """Take the state of a checkpoint."""
+        loop = self.state.resume(self.kind, **self.memory())
+        for name in self.remembered:
+            setattr(self, name, loop[name])
 
 
 class IncrementLoop:
@@ -201,11 +208,9 @@ class ContactIncrement(Protocol):
     @property
     def force(self) -> Floats:
         """Of contact on the nodes at its end, shape (n_dofs,)."""
-        ...
 
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""
-        ...
 
 
 @dataclass
@@ -232,7 +237,7 @@ class Attempt:
     share: float = CUT
 
 
-class NewtonStepper(ABC):
+class NewtonStepper(Stepper):
     """Increments solved by Newton's method, cut back on failure.
 
     Parameters
@@ -243,7 +248,6 @@ class NewtonStepper(ABC):
         Step times that must be hit exactly.
     """
 
-    kind = ""
     advice = MORE_OR_LONGER
 
     def __init__(self, loop: IncrementLoop, step: Static | Dynamic, stops: list[float]) -> None:
@@ -252,17 +256,14 @@ class NewtonStepper(ABC):
 
     @property
     def finished(self) -> bool:
-        """Whether the step is at its end."""
         return self.control.finished
 
     @property
-    def taken(self) -> int:
-        """Increments so far."""
+    def taken(self) -> int:  # type: ignore[override]
         return self.control.number
 
     @property
     def where(self) -> str:
-        """Progress of the step in words."""
         return f"step time {self.control.time:g} of {self.control.step.period:g}"
 
     def target(self) -> float:
@@ -287,10 +288,6 @@ class NewtonStepper(ABC):
     @abstractmethod
     def accept(self, attempt: Attempt) -> Accepted:
         """Commit an increment."""
-
-    @abstractmethod
-    def memory(self) -> dict[str, object]:
-        """See :class:`Stepper`."""
 
     @property
     def report(self) -> Report | None:

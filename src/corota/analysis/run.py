@@ -258,7 +258,6 @@ class Analysis:
                         f"step {number} stopped at step time {state.step_time:g} of "
                         f"{step.period:g}: {failure}. All increments before are kept"
                     ) from None
-            assert state.energies is not None
             self.energies = state.energies
             if remark := state.energies.remark():
                 results.notes.append(remark)
@@ -344,7 +343,6 @@ class Analysis:
         return system.reaction(state.at)
 
     def _resume(self, start: Checkpoint, state: State) -> None:
-        """Prepare the procedure for the state of a checkpoint."""
         begun = Reader(start.arrays, {}).read(dict_of(start.tree)["begun"])
         built = copies_as_built({"system": self.system}, self.known())
         replay(self, begun)
@@ -361,7 +359,6 @@ class Analysis:
         system.conditions.end_time = state.step_time
         if kind == "path":
             system.conditions.end_time = loop["factor"] * system.conditions.factors.period
-        assert state.energies is not None
         if state.energies.scheme == "energy_momentum" and state.v is not None:
             state.carried = (state.u, state.v, loop["now"].v)
         state.reaction = None
@@ -396,7 +393,6 @@ class Analysis:
         return self.masses[number - 1]
 
     def _begin(self, step: Step, number: int, state: State, reaction: Floats | None) -> None:
-        """Start a step from the committed state."""
         system = self.system
         kinematics = system.nlgeom, system.about_linear
         system.mass = self.mass(number)
@@ -415,7 +411,6 @@ class Analysis:
         other = kinematics != (system.nlgeom, system.about_linear) or bool(step.element_changes)
         if state.at is None or other:
             state.at = system.evaluate(state.u, 0.0)
-        assert state.energies is not None
         state.energies.begin(step, state.at.internal)
         if number == 1:
             state.notes += [note for term in system.terms for note in term.notes]
@@ -423,7 +418,6 @@ class Analysis:
                 self._save(number, state, 0, 0.0, {})
 
     def _keep_iterate(self, state: State) -> None:
-        """Where the last attempt ended, as a frame of its own."""
         system, failed = self.system, state.failed
         if failed is None or failed.at is None or not np.isfinite(failed.u).all():
             return
@@ -449,13 +443,9 @@ class Analysis:
         found = (localized(block, own) for block, own in zip(blocks, fields, strict=True))
         own = next((each for each in found if each), None)
         every = [each for each in self.system.communicator.gather(own) if each]
-        first: tuple[int, str] | None = self.system.communicator.broadcast(
-            every[0] if every else None
-        )
-        return first
+        return self.system.communicator.broadcast(every[0] if every else None)
 
     def _warn(self, kind: str, note: str) -> None:
-        """Issue a warning once, and keep it."""
         if kind not in self.warned:
             self.warned.add(kind)
             self.results.notes.append(note)
@@ -501,7 +491,6 @@ class Analysis:
             fields = system.communicator.fields(fields, system.own_numbers)
         kind = self.steps[number - 1].procedure
         if kind == "dynamic" or (kind == "static" and elements is not None):
-            assert state.energies is not None
             state.energies.add_to(scalars, elements, (number, increment))
         outputs = [term.output() for term in system.terms]
         contact = next((out.contact for out in outputs if out.contact is not None), None)

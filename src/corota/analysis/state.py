@@ -30,11 +30,9 @@ class Resumption(Protocol):
     @property
     def kind(self) -> str:
         """Kind of the loop that it was taken in."""
-        ...
 
     def restore(self, state: State) -> None:
         """Restore the state of all objects of the analysis."""
-        ...
 
 
 @dataclass
@@ -44,14 +42,14 @@ class State:
     Parameters
     ----------
     u : ndarray, shape (n_dofs,)
+    energies : Energies
+        The energy balance.
     time : float
         Total time at the start of the current step [time].
     step_time : float
         Time in the current step [time].
     at : Evaluation or None
         Evaluation at `u`.
-    energies : Energies or None
-        The energy balance.
     reaction : ndarray, shape (n_dofs,), or None
         Reactions at `u` where inertia takes part in them; else they follow from `at`.
     negative : int
@@ -91,10 +89,10 @@ class State:
     recomputed: ClassVar[frozenset[str]] = frozenset({"resumption", "recover"})
 
     u: Floats
+    energies: Energies
     time: float = 0.0
     step_time: float = 0.0
     at: Evaluation | None = None
-    energies: Energies | None = None
     reaction: Floats | None = None
     negative: int = -1
     counters: dict[str, int] = field(default_factory=dict)

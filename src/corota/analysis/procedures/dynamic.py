@@ -85,6 +85,7 @@ class DynamicStepper(NewtonStepper):
     """Increments of an implicit time scheme."""
 
     kind = "dynamic"
+    remembered = ("control", "energy_balance", "ends", "approach", "now", "removed_turns")
 
     def __init__(self, loop: IncrementLoop, step: Dynamic, stops: list[float]) -> None:
         super().__init__(loop, step, stops)
@@ -102,7 +103,6 @@ class DynamicStepper(NewtonStepper):
             if resumes
             else start_motion(system, step, state, self.inertia, self.viscous)
         )
-        assert state.energies is not None
         self.energy_balance = Balance(system, step, self.now, self.inertia, state.energies)
         self.ends = EndForces(system)
         if not step.fixed_increments and step.first_increment >= step.period:
@@ -115,14 +115,7 @@ class DynamicStepper(NewtonStepper):
         self.motion: NewmarkMotion | ConservingMotion
         self.error = 0.0
         if resumes:
-            found = state.resume(
-                self.kind,
-                control=control,
-                energy_balance=self.energy_balance,
-                ends=self.ends,
-                approach=self.approach,
-            )
-            self.now, self.removed_turns = found["now"], found["removed_turns"]
+            self.resume()
             return
         now = self.now
         scalars: dict[str, float] = {}
@@ -142,19 +135,7 @@ class DynamicStepper(NewtonStepper):
         counts = ~system.by_node(massless.astype(float))[:, :2].any(axis=1)
         return known, there & moves, there & counts
 
-    def memory(self) -> dict[str, object]:
-        """What a checkpoint holds beside the committed state."""
-        return {
-            "control": self.control,
-            "energy_balance": self.energy_balance,
-            "ends": self.ends,
-            "approach": self.approach,
-            "now": self.now,
-            "removed_turns": self.removed_turns,
-        }
-
     def target(self) -> float:
-        """Target step time of the next attempt [time]."""
         target = super().target()
         if self.step.fixed_increments:
             return target
@@ -229,7 +210,6 @@ class DynamicStepper(NewtonStepper):
         return None
 
     def refusal(self, failed: Attempt, end: str) -> str:
-        """Why the step stopped."""
         return (
             f"step {self.loop.number} stopped at {self.where}: {end}; last attempt: "
             f"{failed.reason}. All converged increments are kept"
@@ -323,7 +303,6 @@ def warn_of_long_increments(system: System, step: Dynamic, state: State) -> None
 
 
 def _amplitudes(system: System, step: Dynamic) -> list[tuple[str, Amplitude]]:
-    """Amplitudes of the loads and supports of a step by name."""
     model = system.model
     items = [*model.loads, *model.supports, *step.loads, *step.supports]
     names = sorted({item.amplitude for item in items if item.amplitude})

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 
 from corota.analysis.energies import LARGE_ERROR
-from corota.analysis.increment_loop import Accepted, IncrementLoop
+from corota.analysis.increment_loop import Accepted, IncrementLoop, Stepper
 from corota.analysis.numbered_model import Role
 from corota.analysis.procedures.explicit_constraints import FreeMass, ReducedMass, mass_of
 from corota.analysis.procedures.motion_start import initial_velocity
@@ -42,11 +42,6 @@ BALANCED = 1e-9
 FRAMES = 200
 #: Two times closer than this share of the period are the same.
 SAME_TIME = 1e-9
-#: Attributes of the stepper that a checkpoint holds.
-MEMORY = (
-    *("known", "done", "n", "keep", "wanted", "dt", "stable", "u", "v", "at"),
-    *("begin", "work", "internal", "reported_internal", "driven", "contact", "force", "between"),
-)
 
 
 def diagonal(system: System) -> Floats:
@@ -144,7 +139,7 @@ class CentralDifference(AtVelocity):
             at.internal = at.internal + at.damping
 
 
-class ExplicitStepper:
+class ExplicitStepper(Stepper):
     """Increments of central differences, all of one size; some of many are shown.
 
     Parameters
@@ -156,6 +151,10 @@ class ExplicitStepper:
     """
 
     kind, advice = "explicit", "allow more (INC=)"
+    remembered = (
+        *("known", "taken", "n", "keep", "wanted", "dt", "stable", "u", "v", "at", "begin", "work"),
+        *("internal", "reported_internal", "driven", "contact", "force", "between"),
+    )
 
     def __init__(self, loop: IncrementLoop, step: Dynamic, stops: list[float]) -> None:
         self.system, self.state, self.step = loop.system, loop.state, step
@@ -191,7 +190,6 @@ class ExplicitStepper:
         self.u = state.u.copy()
         self.at = system.evaluate(self.u, 0.0, CentralDifference(state.v))
         self.idle = self.moved.idle
-        assert state.energies is not None
         self.account = account = state.energies
         self.contact = forward_contact(system, account, dt)
         if not resumes:
@@ -215,12 +213,8 @@ class ExplicitStepper:
         self.known = Known(system, mass, first, dt)
         account.set_kinetic(first)
         self.driven = 0.5 * float((mass * state.v**2)[constrained].sum())
-        self.done = 0
         if resumes:
-            fresh = {"known": self.known, "contact": self.contact}
-            for name, value in state.resume(self.kind, **fresh).items():
-                if name != "kind":
-                    setattr(self, name, value)
+            self.resume()
             return
         state.at = replace(self.at, internal=self.at.internal - force)
         state.a = np.where(constrained, given_a, a)
@@ -249,34 +243,21 @@ class ExplicitStepper:
             )
         return min(SAFETY * stable, step.largest_increment)
 
-    def memory(self) -> dict[str, object]:
-        """What a checkpoint holds beside the committed state."""
-        return {name: getattr(self, name) for name in MEMORY}
-
     @property
     def finished(self) -> bool:
-        """Whether the step is at its end."""
-        return self.done >= self.n
-
-    @property
-    def taken(self) -> int:
-        """Increments so far."""
-        return self.done
+        return self.taken >= self.n
 
     @property
     def where(self) -> str:
-        """Progress of the step in words."""
-        return f"step time {self.done * self.dt:g} of {self.step.period:g}"
+        return f"step time {self.taken * self.dt:g} of {self.step.period:g}"
 
     def advance(self) -> Accepted:
-        """Take increments up to the next one for output."""
         while True:
             shown = self._one()
             if shown is not None:
                 return shown
 
     def _one(self) -> Accepted | None:
-        """Take one increment; None where it is not shown."""
         system, state, account, mass, dt = (
             self.system,
             self.state,
@@ -285,7 +266,7 @@ class ExplicitStepper:
             self.dt,
         )
         constrained = system.conditions.constrained
-        i = self.done + 1
+        i = self.taken + 1
         time = i * dt
         before = self.at
         while self.between and self.between[0] < time:
@@ -331,7 +312,7 @@ class ExplicitStepper:
                 f"the solution diverges at step time {time:g}; the stable increment has become "
                 f"smaller than {dt:g}: use automatic increments with a smaller first one"
             )
-        self.done = i
+        self.taken = i
         self.envelope.add(self.u, whole, at.external, np.where(constrained, residual, 0.0))
         requested = i in self.wanted or any(f and i % f == 0 for f in self.every)
         if i % self.keep and i != self.n and not requested:
@@ -366,7 +347,7 @@ class ExplicitStepper:
         kept = dict(vars(state))
         sums = account.kinetic, account.work, account.internal
         constrained = system.conditions.constrained
-        lag = time - self.done * self.dt
+        lag = time - self.taken * self.dt
         moved = np.where(
             constrained, system.conditions.supports.at(time, self.u) - self.u, lag * self.v
         )
@@ -393,7 +374,7 @@ class ExplicitStepper:
             "kinetic energy": account.kinetic,
             **momenta(system, self.mass, state.u, state.v),
         }
-        self.save(state, self.done + 1, time / self.step.period, scalars)
+        self.save(state, self.taken + 1, time / self.step.period, scalars)
         vars(state).update(kept)
         account.kinetic, account.work, account.internal = sums
         account.drive(self.at.external, self.at.residual - self.force)

@@ -139,29 +139,24 @@ class ReducedMass(FreeMass):
         self.carried[dependent[moves]] = True
 
     def inertia(self, x: Floats) -> Floats:
-        """See :class:`FreeMass`."""
         return self.link.gather(self.mass * self.link.move(x))
 
     def response(self, force: Floats) -> Floats:
-        """See :class:`FreeMass`."""
         out = np.zeros_like(force)
         out[self.moving] = self._solve(force[self.moving])
         return out
 
     def stiffness(self, values: Floats, x: Floats) -> Floats:
-        """See :class:`FreeMass`."""
         system = self.system
         moved = self.constraints.to_global(self.link.move(x))
         force = system.pattern.multiply(values, moved)
         return self.link.gather(self.constraints.to_axes(force))
 
     def felt(self, values: Floats) -> Bools:
-        """See :class:`FreeMass`."""
         size = self.system.pattern.largest_by_row(values)
         return self.link.gather_sizes(size) > 0.0
 
     def follow(self, move: Floats, u: Floats) -> Bools:
-        """See :class:`FreeMass`."""
         held: Bools = self.system.conditions.constrained.copy()
         at = u + np.where(held, move, 0.0)
         self.constraints.complete(at)

@@ -85,5 +85,4 @@ class FreeFlight:
         flown = np.zeros_like(moved)
         flown[self.nodes, :2] = dt * travel[body] + change
         flown[self.nodes, 2] = turn[body]
-        guess: Floats = u + system.from_nodes(flown)
-        return guess
+        return u + system.from_nodes(flown)

@@ -180,16 +180,9 @@ def _participation(lin: LinearMotion, shapes: Floats) -> dict[str, float]:
     As CalculiX prints them: along x, y and about the origin, with constrained dofs at rest.
     """
     system = lin.system
-    x = system.model.mesh.points
-    one, zero = np.ones(len(x)), np.zeros(len(x))
-    fields = {
-        "x": np.stack([one, zero, zero], axis=1),
-        "y": np.stack([zero, one, zero], axis=1),
-        "rotation": np.stack([-x[:, 1], x[:, 0], one], axis=1),
-    }
+    motions = np.ascontiguousarray(system.rigid_motions(system.model.mesh.points).T)
     scalars: dict[str, float] = {}
-    for name, field in fields.items():
-        rigid = system.from_nodes(field.ravel())
+    for name, rigid in zip(("x", "y", "rotation"), motions, strict=True):
         rigid[system.conditions.constrained] = 0.0
         force = system.product(lin.mass_values, rigid)
         for k, value in enumerate(shapes.T @ force, start=1):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy.sparse as sp
 
-from corota.analysis.increment_loop import Accepted, IncrementLoop
+from corota.analysis.increment_loop import Accepted, IncrementLoop, Stepper
 from corota.analysis.linear.factor import Factor
 from corota.analysis.procedures.linear_fields import LinearFields
 from corota.analysis.procedures.modal import supported
@@ -55,7 +55,7 @@ def steady_state_step(loop: IncrementLoop, step: SteadyState, stops: list[float]
     state.step_time = 0.0
 
 
-class HarmonicStepper:
+class HarmonicStepper(Stepper):
     """One frequency after the other.
 
     Parameters
@@ -63,8 +63,6 @@ class HarmonicStepper:
     loop : IncrementLoop
     step : SteadyState
     """
-
-    kind, advice = "", ""
 
     def __init__(self, loop: IncrementLoop, step: SteadyState) -> None:
         self.system, self.state, self.step = loop.system, loop.state, step
@@ -96,21 +94,14 @@ class HarmonicStepper:
                 "stress and energy of the elements are those of the instantaneous ones"
             )
         self.fields = LinearFields(system, lin.u)
-        self.taken = 0
 
     @property
     def finished(self) -> bool:
-        """Whether all frequencies are done."""
         return self.taken >= len(self.frequencies)
 
     @property
     def where(self) -> str:
-        """Progress of the step in words."""
         return f"frequency {self.frequencies[self.taken - 1]:g}"
-
-    def memory(self) -> dict[str, object]:
-        """Nothing: harmonic steps are not resumed."""
-        return {}
 
     def _next_answer(self) -> tuple[float, Complex, Complex]:
         """Frequency, load and response; frequencies of undamped modes have none: left out."""
@@ -160,8 +151,7 @@ def _reaction(lin: LinearMotion, forces: Complex, load: Complex) -> Complex:
         found[lin.free] += force[: lin.nf]
         found[lin.free] += lin.tractions(found[lin.free])
         parts.append(np.where(lin.system.conditions.constrained, found, 0.0))
-    whole: Complex = parts[0] + 1j * parts[1]
-    return whole
+    return parts[0] + 1j * parts[1]
 
 
 def _amplitudes(
@@ -257,7 +247,8 @@ def _direct(lin: LinearMotion, step: SteadyState, number: int, relaxed: ComplexS
             dynamic = dynamic + change
             part = lin.sub(change)
             lossy, loss = True, loss + part.imag
-        rhs = _complex_gather(lin, load) - (dynamic @ h + 1j * w * (c @ h))[lin.active]
+        rhs = lin.gather(load.real) + 1j * lin.gather(load.imag)
+        rhs = rhs - (dynamic @ h + 1j * w * (c @ h))[lin.active]
         a = k - w**2 * m
         if relaxed:
             a = a + part.real
@@ -278,11 +269,6 @@ def _direct(lin: LinearMotion, step: SteadyState, number: int, relaxed: ComplexS
         return z
 
     return answer
-
-
-def _complex_gather(lin: LinearMotion, force: Complex) -> Complex:
-    found: Complex = lin.gather(force.real) + 1j * lin.gather(force.imag)
-    return found
 
 
 class _Resonance(ModelError):

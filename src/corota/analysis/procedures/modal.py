@@ -9,7 +9,7 @@ import numpy as np
 
 from corota.analysis.evaluation import Evaluation
 from corota.analysis.failure import ElementFailure
-from corota.analysis.increment_loop import Accepted, IncrementLoop
+from corota.analysis.increment_loop import Accepted, IncrementLoop, Stepper
 from corota.analysis.procedures.linear_fields import LinearFields
 from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.procedures.reduced import Patterns, Reduced, last_modes
@@ -48,7 +48,7 @@ def modal_step(loop: IncrementLoop, step: ModalDynamic, stops: list[float]) -> N
     leave(system, state, step.period)
 
 
-class ModalStepper:
+class ModalStepper(Stepper):
     """Increments of the modal coordinates, exact for inputs that are linear in time.
 
     Parameters
@@ -57,7 +57,7 @@ class ModalStepper:
     step : ModalDynamic
     """
 
-    kind, advice = "", "allow more (INC=), or take larger increments"
+    advice = "allow more (INC=), or take larger increments"
 
     def __init__(self, loop: IncrementLoop, step: ModalDynamic, stops: list[float]) -> None:
         self.system, self.state, self.step = loop.system, loop.state, step
@@ -81,7 +81,6 @@ class ModalStepper:
         _tell_lost(system, state, number, state.u - lin.u, model.displacement(q, self.s[0]))
         self.fields = LinearFields(system, lin.u)
         self.x = np.concatenate([p, v])
-        self.taken = 0
         grid = [s for s in stops if 0.0 < s < step.period]
         #: Requested times within increments.
         self.between = sorted(
@@ -90,17 +89,11 @@ class ModalStepper:
 
     @property
     def finished(self) -> bool:
-        """Whether the step is at its end."""
         return self.taken >= self.n
 
     @property
     def where(self) -> str:
-        """Progress of the step in words."""
         return f"step time {self.taken * self.dt:g} of {self.step.period:g}"
-
-    def memory(self) -> dict[str, object]:
-        """Nothing: modal steps are not resumed."""
-        return {}
 
     def advance(self) -> Accepted:
         """Take one increment, or the part of it up to a requested time."""
@@ -212,8 +205,7 @@ def _advance(model: Reduced, dt: float) -> Floats:
     a[m : 2 * m, 2 * m + nf : 2 * m + k] = model.stiffness @ model.carried
     a[m : 2 * m, 2 * m + k + nf :] = model.damping @ model.carried - model.dragged
     a[2 * m : 2 * m + k, 2 * m + k :] = np.eye(k)
-    found: Floats = expm(dt * a)[: 2 * m]
-    return found
+    return expm(dt * a)[: 2 * m]
 
 
 def linear_evaluation(

@@ -153,7 +153,6 @@ class NewmarkMotion(Motion):
         return StatePoint(u, step_time, v, a, (1.0, self.c_v, self.c_a))
 
     def close(self, point: StatePoint, at: Evaluation) -> None:
-        """Weigh both ends of the increment."""
         share = 1.0 - self.scheme.alpha_f
         at.weigh(share)
         point = point._replace(weights=(share, share * self.c_v, share * self.c_a))
@@ -195,7 +194,6 @@ class ConservingMotion(Motion):
         return d
 
     def point(self, u: Floats, step_time: float) -> StatePoint:
-        """The middle of the increment."""
         b, dt = self.start, self.dt
         d = self._d = self.increment(u)
         v = self._v = 2.0 / dt * d - self._begun
@@ -215,11 +213,9 @@ class ConservingMotion(Motion):
         self._internal = at.internal.copy()
 
     def link(self, constraints: Constraints, u: Floats) -> LinearizedConstraints:
-        """The constraints over the increment."""
         return constraints.secant(self.start.u, u)
 
     def close(self, point: StatePoint, at: Evaluation) -> None:
-        """Add point masses and damping."""
         assert point.between is not None
         u, v = point.between[1], self._v
         force = self._force + (at.internal - self._internal)

@@ -158,7 +158,6 @@ class Reduced:
             self._tell_missed(f, number)
 
     def _orthonormal(self, x: Floats) -> Floats:
-        """Orthonormal basis in the product of the mass."""
         gram = x.T @ (self._mass @ x)
         values, axes = np.linalg.eigh(0.5 * (gram + gram.T))
         keep = values > DEPENDENT * values.max(initial=0.0)

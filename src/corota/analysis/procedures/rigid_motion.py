@@ -5,13 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from corota.arrays import Floats
-
-
-def _skew(v: Floats) -> Floats:
-    out = np.empty(v.shape)
-    out[:, 0], out[:, 1] = -v[:, 1], v[:, 0]
-    return out
+from corota.arrays import Floats, skew
 
 
 def rigid_rates(x: Floats, rates: Floats) -> Floats:
@@ -19,7 +13,7 @@ def rigid_rates(x: Floats, rates: Floats) -> Floats:
     arm = x - x.mean(axis=0)
     mean = rates.mean(axis=0)
     inertia = float((arm * arm).sum())
-    lever = _skew(arm)
+    lever = skew(arm)
     spin = float((lever * rates).sum()) / inertia if inertia > 0.0 else 0.0
     out: Floats = mean + spin * lever
     return out
@@ -30,7 +24,7 @@ def deformation(reference: Floats, x: Floats, finite: bool = True) -> Floats:
     if not finite:
         return x - reference - rigid_rates(reference, x - reference)
     before, now = reference - reference.mean(axis=0), x - x.mean(axis=0)
-    along, across = float((before * now).sum()), float((_skew(before) * now).sum())
+    along, across = float((before * now).sum()), float((skew(before) * now).sum())
     size = np.hypot(along, across) or 1.0
-    out: Floats = now - (along * before + across * _skew(before)) / size
+    out: Floats = now - (along * before + across * skew(before)) / size
     return out

@@ -93,6 +93,7 @@ class StaticStepper(NewtonStepper):
     """Increments of load control."""
 
     kind = "static"
+    remembered = ("control", "rates", "moved", "creep_error", "creep_excess", "elastic")
 
     def __init__(self, loop: IncrementLoop, step: Static, stops: list[float]) -> None:
         super().__init__(loop, step, stops)
@@ -134,23 +135,6 @@ class StaticStepper(NewtonStepper):
     def finished(self) -> bool:
         """Whether the step is at its end, by load control or along its path."""
         return self.path_took_over or super().finished
-
-    def resume(self) -> None:
-        """Take the state of a checkpoint."""
-        loop = self.state.resume(self.kind, control=self.control)
-        self.rates, self.moved = (loop["first"], loop["rate"]), loop["moved"]
-        self.creep_error, self.creep_excess = loop["creep error"], loop["creep excess"]
-        self.elastic = loop["elastic strain"]
-
-    def memory(self) -> dict[str, object]:
-        """What a checkpoint holds beside the committed state."""
-        first, rate = self.rates
-        memory = {"control": self.control, "first": first, "rate": rate, "moved": self.moved}
-        return memory | {
-            "creep error": self.creep_error,
-            "creep excess": self.creep_excess,
-            "elastic strain": self.elastic,
-        }
 
     # -- attempts ----------------------------------------------------------------------
 
@@ -401,7 +385,6 @@ class StaticStepper(NewtonStepper):
         return None
 
     def refusal(self, failed: Attempt, end: str) -> str:
-        """Why the step stopped."""
         if self.passed is not None:
             return (
                 f"{passed(self.loop.number, self.passed, failed.outcome.negative)}. All increments "
@@ -420,11 +403,9 @@ class StaticStepper(NewtonStepper):
         return text
 
     def accept(self, attempt: Attempt) -> Accepted:
-        """Commit an increment and set the size of the next."""
         system, state, control, outcome = self.system, self.state, self.control, attempt.outcome
         assert attempt.contact is not None
         assert outcome.at is not None
-        assert state.energies is not None
         state.notes += attempt.contact.accept(outcome.u, attempt.target)
         dt = attempt.target - control.time
         moved = outcome.u - state.u

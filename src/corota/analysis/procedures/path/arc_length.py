@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.failure import ElementFailure, GiveUp
-from corota.analysis.increment_loop import Accepted, IncrementLoop
+from corota.analysis.increment_loop import Accepted, IncrementLoop, Stepper
 from corota.analysis.newton import ResidualNorms, Settings
 from corota.analysis.path_system import Point, Tangent
 from corota.analysis.procedures.path.branches import BranchTracer
@@ -54,7 +54,7 @@ def path_step(loop: IncrementLoop, path: ArcLength | DisplacementControl) -> Non
     PathStepper(loop).run(path)
 
 
-class PathStepper:
+class PathStepper(Stepper):
     """Increments along a path; its tracer attempts them and chooses their sizes.
 
     Parameters
@@ -81,6 +81,10 @@ class PathStepper:
 
     kind = "path"
     advice = "allow more, or define another end of the path"
+    remembered = (
+        *("along", "follower", "factor", "taken", "located", "limit"),
+        *("rates", "stalled", "begin", "arc", "found"),
+    )
 
     def __init__(self, loop: IncrementLoop, factor: float = 0.0, increment: int = 0) -> None:
         self.loop, self.system, self.state = loop, loop.system, loop.state
@@ -112,7 +116,8 @@ class PathStepper:
         system, state, period = self.system, self.state, self.step.period
         self.stop_at_limit = bool(getattr(path, "stop_at_limit", False))
         if state.resumes:
-            self._resume()
+            self.follower = self._tracer(Point(state.u, 0.0, None), Plan())
+            self.resume()
         else:
             self.follower = self._tracer(self._start(), self._plan(path))
         try:
@@ -166,7 +171,6 @@ class PathStepper:
         return rate / period
 
     def _start(self) -> Point:
-        """The committed state as the start of the path."""
         system, step, state = self.system, self.step, self.state
         start = self.along.start(state.u)
         at = self.along.evaluate(start, self.factor * step.period)
@@ -189,42 +193,14 @@ class PathStepper:
             self.along, start, step.period, settings, plan, self._report, self._cut_back
         )
 
-    def _resume(self) -> None:
-        """Take the state of a checkpoint."""
-        self.follower = self._tracer(Point(self.state.u, 0.0, None), Plan())
-        loop = self.state.resume(self.kind, along=self.along, tracer=self.follower)
-        self.factor, self.taken = loop["factor"], loop["increment"]
-        self.located, self.limit = loop["located"], loop["limit"]
-        self.rates, self.stalled = loop["rates"], loop["stalled"]
-        self.begin, self.arc = loop["begin"], loop["arc"]
-        self.found = loop["found"]
-
-    def memory(self) -> dict[str, object]:
-        """What a checkpoint holds beside the committed state."""
-        return {
-            "along": self.along,
-            "tracer": self.follower,
-            "factor": self.factor,
-            "increment": self.taken,
-            "located": self.located,
-            "limit": self.limit,
-            "rates": self.rates,
-            "stalled": self.stalled,
-            "begin": self.begin,
-            "arc": self.arc,
-            "found": self.found,
-        }
-
     # -- increments --------------------------------------------------------------------
 
     @property
     def finished(self) -> bool:
-        """Whether the path is at its end."""
         return self.found is not None and self.found.last
 
     @property
     def where(self) -> str:
-        """Progress of the path in words."""
         return f"load factor {self.factor:.6g}"
 
     @property
@@ -258,7 +234,6 @@ class PathStepper:
     def _accept(self, found: Increment) -> Accepted:
         state, system = self.state, self.system
         at, u = found.point.evaluation, found.point.u[: system.n_dofs]
-        assert state.energies is not None
         state.energies.add_quasi_static(u, state.u, at)
         state.u, state.at, state.failed = u, at, None
         before, period = state.step_time, self.step.period
@@ -312,7 +287,6 @@ class PathStepper:
         return Accepted(self.taken, self.factor, scalars)
 
     def _tell_branches(self, critical: Critical, point: CriticalPoint) -> None:
-        """Give a bifurcation point its branches."""
         system = self.system
         point.branches = np.array([system.by_node(b[: system.n_dofs]) for b in critical.branches])
         if len(point.branches) > 1:

@@ -216,5 +216,4 @@ class BranchTracer(PathTracer):
     recomputed: ClassVar[frozenset[str]] = frozenset({"report", "cut_back"})
 
     def take_branch(self, critical: Critical) -> Increment:
-        """See :func:`switch`."""
         return switch(self, critical)

@@ -34,7 +34,6 @@ class Control(Protocol):
         a, b : ndarray, shape (n_dofs,)
             Correction by the residual, and for a unit of load factor.
         """
-        ...
 
 
 @dataclass
