@@ -19,6 +19,11 @@ else:
     Bools = Complex = Floats = Ints = np.ndarray
 
 
+def skew(vectors: Floats) -> Floats:
+    """Vectors rotated to the left by a right angle, shape (..., 2)."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
+
+
 def distinct(values: ArrayLike) -> NDArray[Any]:
     """Distinct values in ascending order.
 

@@ -115,11 +115,9 @@ class Analysis(Protocol):
 
     def known(self) -> dict[str, object]:
         """Objects stored by reference in checkpoints."""
-        ...
 
     def mass(self, number: int) -> MovingMass:
         """Mass that gravity acts on in a step."""
-        ...
 
 
 @dataclass

@@ -29,6 +29,7 @@ from corota.analysis.distributed_forces import (
 from corota.arrays import Bools, Floats, Ints, distinct
 from corota.errors import InputError, Location, ModelError
 from corota.mesh.kinds import EDGES
+from corota.mesh.shape_functions import edge_functions
 from corota.model import axisymmetry, elements
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce
 
@@ -149,10 +150,13 @@ class DistributedLoads:
         kept: list[DistributedLoad] = []
         for old in self.loads:
             if old.faces is None or new.faces is None:
-                same = old.faces is new.faces and _same_body(old.item, new.item)
-                if old.faces is new.faces and _ends_body(old.item, new.item):
+                one, other = old.item, new.item
+                if not (isinstance(one, BodyForce) and isinstance(other, BodyForce)):
+                    kept.append(old)
+                elif one.kind == other.kind and other.every:
+                    # A body force of zero ends every earlier one of its kind in its elements.
                     kept += self._without(old, new)
-                elif same:
+                elif _same_body(one, other):
                     kept += _fading(old, new)
                 else:
                     kept.append(old)
@@ -243,7 +247,6 @@ class DistributedLoads:
         return found
 
     def _at_nodes(self, load: DistributedLoad) -> DistributedLoad:
-        """Build follower forces with the data of their nodes."""
         assert load.faces is not None
         assert isinstance(load.item, NodalForce)
         nodes, system = load.faces[:, 0], self.system
@@ -301,7 +304,6 @@ class DistributedLoads:
         return FollowingTraction(self.system, nodes, thickness, load.traction, bulges, ring)
 
     def _electrostatic(self, load: DistributedLoad) -> ElectrostaticPressure:
-        """The attraction of edges by the opposite electrode."""
         from corota.analysis.electrostatics import ElectrostaticPressure
 
         assert load.faces is not None
@@ -317,7 +319,6 @@ class DistributedLoads:
         )
 
     def _penetrating(self, load: DistributedLoad) -> PenetratingPressure:
-        """The pressure of a fluid that passes along edges."""
         from corota.analysis.penetration import Edges, PenetratingPressure
 
         item = load.item
@@ -436,8 +437,8 @@ class DistributedLoads:
                 area += float(np.hypot(*(x[1] - x[0]))) * float(thickness.mean())
                 continue
             r = np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
-            d = np.stack([r - 0.5, r + 0.5, -2.0 * r], axis=1) @ x
-            shape = np.stack([0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r], axis=1)
+            shape, slope = edge_functions(r)
+            d = slope @ x
             weight = np.array([5.0, 8.0, 5.0]) / 9.0 * (shape @ thickness)
             area += float(np.hypot(d[:, 0], d[:, 1]) @ weight)
         return area
@@ -497,11 +498,9 @@ def _is_dead(item: Item) -> bool:
     return isinstance(item, NodalForce) and not item.follower
 
 
-def _same_body(old: Item, new: Item) -> bool:
+def _same_body(old: BodyForce, new: BodyForce) -> bool:
     """Whether two body forces are one load, of which the later value counts."""
-    if not (isinstance(old, BodyForce) and isinstance(new, BodyForce)) or old.kind != new.kind:
-        return False
-    if _name(old) != _name(new):
+    if old.kind != new.kind or _name(old) != _name(new):
         return False
     if old.kind == "centrifugal":
         return float(np.hypot(*np.subtract(old.value[1:3], new.value[1:3]))) <= SAME
@@ -512,15 +511,7 @@ def _same_body(old: Item, new: Item) -> bool:
     return one is None or other is None or float(np.dot(one, other)) > 1.0 - SAME
 
 
-def _ends_body(old: Item, new: Item) -> bool:
-    """Whether a body force of zero ends every earlier one of its kind in its elements."""
-    if not (isinstance(old, BodyForce) and isinstance(new, BodyForce)) or old.kind != new.kind:
-        return False
-    return new.every
-
-
 def _name(item: BodyForce) -> object:
-    """The set that a body force acts on."""
     masses = None if item.masses is None else item.masses.tobytes()
     if isinstance(item.cells, str):
         return item.cells if item.cells != "all" else "", masses

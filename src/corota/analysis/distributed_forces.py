@@ -9,13 +9,15 @@ displacement is computed once.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from corota.errors import InputError, ModelError
 from corota.mesh import selection
+from corota.mesh.shape_functions import edge_functions
 from corota.model import elements
 
 if TYPE_CHECKING:
@@ -75,25 +77,33 @@ class LoadSum:
         return rows, columns, self.share * values
 
 
-class Distribution(Protocol):
+class Distribution(ABC):
     """A distributed load without its history."""
 
-    follows: bool  # whether its force depends on the displacement
+    #: Whether its force depends on the displacement.
+    follows = True
+    _unit: Floats | None = None
 
     def unit(self) -> Floats:
         """Force of unit scale on the reference, shape (n_dofs,)."""
-        ...
+        if self._unit is None:
+            self._unit = self._reference()
+        return self._unit
 
+    @abstractmethod
+    def _reference(self) -> Floats:
+        """What `unit` keeps."""
+
+    @abstractmethod
     def add(self, scale: float, u: Floats, to: LoadSum) -> None:
         """Add force and derivative at a displacement."""
-        ...
 
     def set_mass(self, kind: str) -> None:
         """Use the inertial mass for gravity."""
-        ...
+        return
 
 
-class BodyLoad:
+class BodyLoad(Distribution):
     """Gravity or centrifugal force of some elements.
 
     Parameters
@@ -164,21 +174,15 @@ class BodyLoad:
             self.points[system.component == 1] = 0.0  # the axis of the model, not z
         self.turns = system.communicator.any(any(drilling))
         self.follows = item.kind == "centrifugal" or self.turns
-        self._unit: Floats | None = None
         self._linear: tuple[Floats, Floats] | None = None
 
     def set_mass(self, kind: str) -> None:
-        """See :class:`Distribution`."""
         self.mass, self._unit, self._linear = kind, None, None
 
-    def unit(self) -> Floats:
-        """See :class:`Distribution`."""
-        if self._unit is None:
-            self._unit = self.system.at_nodes(self._at_rest(self.masks, EMPTY))
-        return self._unit
+    def _reference(self) -> Floats:
+        return self.system.at_nodes(self._at_rest(self.masks, EMPTY))
 
     def add(self, scale: float, u: Floats, to: LoadSum) -> None:
-        """See :class:`Distribution`."""
         system = self.system
         here, before = (
             np.ascontiguousarray(system.in_space(x)) if len(x) else x for x in (u, to.start)
@@ -268,7 +272,7 @@ class BodyLoad:
             force += communicator.sum(own)
 
 
-class Traction:
+class Traction(Distribution):
     """A dead traction; on drilling elements its end moments rotate with the edges."""
 
     def __init__(
@@ -280,20 +284,12 @@ class Traction:
     ) -> None:
         self.system, self.edges, self.value = system, edges, value
         self.follows = drilling
-        self._unit: Floats | None = None
         self._places: tuple[Ints, Ints] | None = None
 
-    def set_mass(self, kind: str) -> None:
-        """See :class:`Distribution`."""
-
-    def unit(self) -> Floats:
-        """See :class:`Distribution`."""
-        if self._unit is None:
-            self._unit = self._evaluate(1.0, None)[0]
-        return self._unit
+    def _reference(self) -> Floats:
+        return self._evaluate(1.0, None)[0]
 
     def add(self, scale: float, u: Floats, to: LoadSum) -> None:
-        """See :class:`Distribution`."""
         force, (rows, columns, values) = self._evaluate(scale, to.middle(u))
         to.force += force
         if not len(to.values):
@@ -311,26 +307,16 @@ class Traction:
         return evaluate(self.system, self.edges.traction, u, t)
 
 
-class Pressure:
+class Pressure(Distribution):
     """A pressure that follows its edges; the scale is its size."""
-
-    follows = True
 
     def __init__(self, system: NumberedModel, edges: _core.EdgeLoads) -> None:
         self.system, self.edges = system, edges
-        self._unit: Floats | None = None
 
-    def set_mass(self, kind: str) -> None:
-        """See :class:`Distribution`."""
-
-    def unit(self) -> Floats:
-        """See :class:`Distribution`."""
-        if self._unit is None:
-            self._unit = evaluate(self.system, self.edges.pressure, None, 1.0)[0]
-        return self._unit
+    def _reference(self) -> Floats:
+        return evaluate(self.system, self.edges.pressure, None, 1.0)[0]
 
     def add(self, scale: float, u: Floats, to: LoadSum) -> None:
-        """See :class:`Distribution`."""
         force, entries = evaluate(self.system, self.edges.pressure, to.middle(u), scale)
         to.force += force
         to.entries.append(entries)
@@ -360,9 +346,7 @@ def hydrostatic_thickness(
     for i, ends in enumerate(nodes):
         count = 2 if ends[2] == ends[0] else 3
         r, weight = _points_of_edge(points[ends[:count], 1] - level)
-        n = np.stack([0.5 - 0.5 * r, 0.5 + 0.5 * r], axis=1)
-        if count == 3:
-            n = np.stack([0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r], axis=1)
+        n = np.ascontiguousarray(edge_functions(r, count == 3)[0][:, :count])
         share = np.maximum((n @ points[ends[:count], 1] - level) / (height - level), 0.0)
         load = n.T @ (weight * share * (n @ thickness[i, :count]))
         out[i, :count] = np.linalg.solve(n.T @ (weight[:, None] * n), load)

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.distributed_forces import Distribution, LoadSum
 from corota.analysis.failure import ElementFailure
 from corota.analysis.following_forces import edge_shapes
 from corota.errors import Location, ModelError
+from corota.mesh.shape_functions import edge_functions
 
 if TYPE_CHECKING:
-    from corota.analysis.distributed_forces import LoadSum
     from corota.analysis.numbered_model import NumberedModel
     from corota.arrays import Floats, Ints
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 
-class ElectrostaticPressure:
+class ElectrostaticPressure(Distribution):
     """Edges that an opposite electrode attracts through a gap.
 
     The field runs straight across the gap. With s along the electrodes, g the current gap across
@@ -49,8 +50,6 @@ class ElectrostaticPressure:
     ModelError
         If the electrodes do not face each other.
     """
-
-    follows = True
 
     def __init__(
         self,
@@ -102,15 +101,10 @@ class ElectrostaticPressure:
         if n and not (gap > 0.0).all():
             raise ModelError("the electrodes of an electrostatic load have no gap", where)
 
-    def set_mass(self, kind: str) -> None:
-        """See :class:`corota.analysis.distributed_forces.Distribution`."""
-
-    def unit(self) -> Floats:
-        """See :class:`corota.analysis.distributed_forces.Distribution`."""
+    def _reference(self) -> Floats:
         return self._force(*self._gap(np.zeros_like(self.system.model.mesh.points)))
 
     def add(self, scale: float, u: Floats, to: LoadSum) -> None:
-        """See :class:`corota.analysis.distributed_forces.Distribution`."""
         if not len(self.weight) or scale == 0.0:
             return
         gap, stretch = self._gap(self.system.by_node(to.middle(u))[:, :2])
@@ -179,6 +173,5 @@ def _facing(
     first, last = ends[edge, 0], ends[edge, 1]
     r = np.clip(2.0 * (place - first) / (last - first) - 1.0, -1.0, 1.0)
     straight = (opposite[:, 2] == opposite[:, 0])[edge]
-    line = np.stack([0.5 - 0.5 * r, 0.5 + 0.5 * r, 0.0 * r], axis=-1)
-    curve = np.stack([0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r], axis=-1)
+    line, curve = edge_functions(r, curved=False)[0], edge_functions(r)[0]
     return opposite[edge], np.where(straight[..., None], line, curve)

@@ -77,14 +77,11 @@ class System(NumberedModel):
         self.terms: list[Term] = [self.elements, self.conditions, *more, ContactTerm(self)]
         #: Whether the last static or dynamic step was geometrically linear.
         self._linear_state = False
-        #: Whether the structure without its loads has no free motion in this step.
-        self.free_motion_excluded = False
         self.scales = Scales(self, self.conditions, self.terms)
         self._spare: list[Floats] = []
 
     @property
     def constrained(self) -> Bools:
-        """Dofs that supports prescribe, shape (n_dofs,)."""
         return self.conditions.constrained
 
     @property
@@ -108,7 +105,6 @@ class System(NumberedModel):
         return sum((f for f in forces if f is not None), start=np.zeros(self.n_dofs))
 
     def nodes_of_terms(self, role: Role) -> Bools:
-        """Nodes of the surfaces that terms join, shape (n_nodes,); see :class:`Term`."""
         out = np.zeros(len(self.per_node), bool)
         for term in self.terms:
             out[term.nodes(role)] = True
@@ -393,7 +389,6 @@ class System(NumberedModel):
         return link.expand(x)
 
     def singular(self, error: SingularError) -> SingularError:
-        """The error of a singular matrix in terms of nodes."""
         from corota.analysis.free_motion import name_motion
 
         return name_motion(self, error, self.scales.ratio)
@@ -420,7 +415,6 @@ class System(NumberedModel):
         return True, None
 
     def _gathered(self, at: Evaluation) -> Floats:
-        """Values of the whole tangent."""
         return self.pattern.gathered(at.values)
 
     @cached_property

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.distributed_forces import LoadSum, Pressure
+from corota.analysis.distributed_forces import Distribution, LoadSum, Pressure
+from corota.mesh.shape_functions import edge_functions
 
 if TYPE_CHECKING:
     import corota._core as _core
@@ -22,7 +23,7 @@ _WEIGHTS = np.array([5.0, 8.0, 5.0]) / 9.0
 _LEFT = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
-class FollowingTraction:
+class FollowingTraction(Distribution):
     """A traction with constant components tangential and normal to the edge.
 
     It acts on the current length. With t and n the current tangent and the normal to its left,
@@ -47,8 +48,6 @@ class FollowingTraction:
     ring : bool
         Whether they are edges of axisymmetric sections.
     """
-
-    follows = True
 
     def __init__(
         self,
@@ -99,7 +98,6 @@ class FollowingTraction:
         self._filled = np.broadcast_to(pair, matrix.shape) & (ring | (matrix != 0.0))
         self._rows = np.broadcast_to(rows, matrix.shape)[self._filled]
         self._columns = np.broadcast_to(columns, matrix.shape)[self._filled]
-        self._unit: Floats | None = None
 
     def _radii(self, x: Floats) -> Floats:
         """Radii at the points, one where there is no circumference; shape (n, 3)."""
@@ -115,19 +113,13 @@ class FollowingTraction:
             matrix[..., 0] += np.einsum("egai,egb->eabi", along, self.shape)
         return matrix
 
-    def set_mass(self, kind: str) -> None:
-        """See :class:`Distribution`."""
-
-    def unit(self) -> Floats:
-        """See :class:`Distribution`."""
-        if self._unit is None:
-            self._unit = self._at(self.reference)
-            for size, pressure in self.bulged:
-                self._unit += size * pressure.unit()
-        return self._unit
+    def _reference(self) -> Floats:
+        force = self._at(self.reference)
+        for size, pressure in self.bulged:
+            force += size * pressure.unit()
+        return force
 
     def add(self, scale: float, u: Floats, to: LoadSum) -> None:
-        """See :class:`Distribution`."""
         moved = self.system.by_node(to.middle(u))[:, :2]
         x = self.reference + moved[self.nodes]
         to.force += scale * self._at(x)
@@ -145,16 +137,12 @@ class FollowingTraction:
 
 def edge_shapes(straight: Bools, r: Floats = _POINTS) -> tuple[Floats, Floats]:
     """Shape functions and slopes of edges at points r from -1 to 1, shapes (n, points, 3)."""
-    one = np.ones_like(r)
-    lines = np.stack([0.5 - 0.5 * r, 0.5 + 0.5 * r, 0.0 * r], axis=1)
-    curves = np.stack([0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r], axis=1)
-    slope_lines = np.stack([-0.5 * one, 0.5 * one, 0.0 * one], axis=1)
-    slope_curves = np.stack([r - 0.5, r + 0.5, -2.0 * r], axis=1)
-    chosen = straight[:, None, None]
-    return np.where(chosen, lines, curves), np.where(chosen, slope_lines, slope_curves)
+    both = zip(edge_functions(r, curved=False), edge_functions(r), strict=True)
+    shape, slope = (np.where(straight[:, None, None], line, curve) for line, curve in both)
+    return shape, slope
 
 
-class TurningForce:
+class TurningForce(Distribution):
     """Nodal forces that follow the rotation of their node.
 
     Parameters
@@ -167,8 +155,6 @@ class TurningForce:
     value : ndarray, shape (n,)
     """
 
-    follows = True
-
     def __init__(self, system: NumberedModel, nodes: Ints, dof: int, value: Floats) -> None:
         self.system, self.nodes = system, nodes
         # Along the axes of the nodes, as all nodal forces are given.
@@ -176,15 +162,10 @@ class TurningForce:
         np.add.at(given, system.dofs(nodes, dof), value)
         self.force = system.by_node(given)[nodes, :2]
 
-    def set_mass(self, kind: str) -> None:
-        """See :class:`Distribution`."""
-
-    def unit(self) -> Floats:
-        """See :class:`Distribution`."""
+    def _reference(self) -> Floats:
         return self._nodal(self.force)
 
     def add(self, scale: float, u: Floats, to: LoadSum) -> None:
-        """See :class:`Distribution`."""
         angle = self.system.by_node(to.middle(u))[self.nodes, 2]
         cos, sin = np.cos(angle), np.sin(angle)
         x, y = scale * self.force.T

@@ -20,7 +20,7 @@ from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.analysis.parallel.partition import own_blocks
 from corota.analysis.terms.moving_mass import MovingMass
 from corota.analysis.terms.thermal import FreeStrains, start_temperatures
-from corota.errors import ModelError
+from corota.errors import ModelError, SingularError
 from corota.model import axisymmetry, elements
 from corota.model.blocks import blocks_of, check_shapes, core_input
 
@@ -56,7 +56,11 @@ class NumberedModel:
     start : ndarray of int, shape (n_nodes + 1,)
         First dof of each node and the total.
     is_rotation : ndarray of bool, shape (n_dofs,)
+    free_motion_excluded : bool
+        Whether the structure without its loads has no free motion in this step.
     """
+
+    free_motion_excluded = False
 
     def __init__(
         self, model: Model, solver: LinearSolver, threads: int = 1, steps: Sequence[Step] = ()
@@ -129,23 +133,20 @@ class NumberedModel:
         #: The constraints as they were linearized for the last correction.
         self.link = self.constraints.link(np.zeros(self.n_dofs))
         if hasattr(solver, "motions"):
-            solver.motions = self.rigid_motions()[self.constraints.free]
+            motions = self.rigid_motions(mesh.points - mesh.points.mean(axis=0))
+            # A ring moves along its axis alone.
+            motions = motions[:, 1:2] if self.axisymmetric else motions
+            solver.motions = motions[self.constraints.free]
         rows = mesh.points.T
         self.length = float(_extent(rows).max()) or 1.0
         self.cell_size = max(float(_extent(rows[:, b.nodes.T]).max()) for b in self.blocks)
 
-    def rigid_motions(self) -> Floats:
-        """Two displacements and a rotation about the middle of all nodes, shape (n_dofs, 3).
-
-        Of a ring that along the axis alone, shape (n_dofs, 1).
-        """
-        points = self.model.mesh.points
-        arm = points - points.mean(axis=0)
-        one, zero = np.ones(len(points)), np.zeros(len(points))
+    def rigid_motions(self, arm: Floats) -> Floats:
+        """Two translations and a rotation, shape (n_dofs, 3), of nodes at `arm` (n_nodes, 2)."""
+        one, zero = np.ones(len(arm)), np.zeros(len(arm))
         x, y = np.stack([one, zero, zero], axis=1), np.stack([zero, one, zero], axis=1)
         spin = np.stack([-arm[:, 1], arm[:, 0], one], axis=1)
-        motions = (y,) if self.axisymmetric else (x, y, spin)
-        return np.stack([self.from_nodes(motion) for motion in motions], axis=1)
+        return np.stack([self.from_nodes(motion) for motion in (x, y, spin)], axis=1)
 
     # -- numbering ---------------------------------------------------------------------
 
@@ -174,8 +175,7 @@ class NumberedModel:
 
     def by_node(self, vector: Floats) -> Floats:
         """Values by node and global component, shape (n_nodes, 3), 0 where there is no dof."""
-        out: Floats = self.core.by_node(np.ascontiguousarray(self.in_space(vector)))
-        return out
+        return self.core.by_node(np.ascontiguousarray(self.in_space(vector)))
 
     def in_space(self, vector: Floats) -> Floats:
         """A vector in nodal axes, converted to global axes, shape (n_dofs,)."""
@@ -219,6 +219,10 @@ class NumberedModel:
     def constrained(self) -> Bools:
         """Dofs that supports prescribe, shape (n_dofs,): none without terms."""
         return np.zeros(self.n_dofs, bool)
+
+    def singular(self, error: SingularError) -> SingularError:
+        """The error of a singular matrix in terms of nodes."""
+        return error
 
     def nodes_of_terms(self, role: Role) -> Bools:
         """Nodes of the surfaces that terms join, shape (n_nodes,): none without terms."""

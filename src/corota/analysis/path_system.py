@@ -108,17 +108,14 @@ class PathSystem(Protocol):
     @property
     def n_dofs(self) -> int:
         """Dofs, the first of the unknowns."""
-        ...
 
     @property
     def counted(self) -> Bools:
         """Unknowns that measure lengths, shape (n,)."""
-        ...
 
     @property
     def length(self) -> float:
         """Size of the structure [length]."""
-        ...
 
     def restart(self, loose: bool = False, like: Evaluation | None = None) -> None:
         """Begin an attempt at an increment: discard the data of earlier attempts.
@@ -126,57 +123,45 @@ class PathSystem(Protocol):
         `loose` allows free bodies to be moved until they are constrained, as into contact; `like`
         is an evaluation that the guess was taken from.
         """
-        ...
 
     def evaluate(self, u: Floats, step_time: float) -> Evaluation:
         """Residual and tangent."""
-        ...
 
     def take_over(self, at: Evaluation, last: Evaluation) -> None:
         """Give the start what flows and slips at the end of the last increment."""
-        ...
 
     def rows(self, u: Floats, step_time: float) -> Floats:
         """Internal forces, and the equations of the other unknowns."""
-        ...
 
     def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
         """Size of the residual."""
-        ...
 
     def refuse(self, at: Evaluation, u: Floats) -> str:
         """Why an equilibrium cannot be the next of the path, or nothing."""
-        ...
 
     def explain(self, at: Evaluation) -> str:
         """Cause of a failed attempt, for its message."""
-        ...
 
     def load_rate(self, u: Floats) -> tuple[Floats, Floats]:
         """Change of forces and of prescribed dofs per unit of load factor."""
-        ...
 
     def advance(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, Floats]:
         """Newton correction at the load factor, and the change per unit of it.
 
         `force` and `move` are those of :meth:`load_rate`.
         """
-        ...
 
     def rate(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, int]:
         """Change per unit of load factor, and negative pivots (-1 if unknown)."""
-        ...
 
     def solve_with_last_factor(self, rhs: Floats) -> Floats:
         """All unknowns for forces of shape (n_dofs,), with the last factorization."""
-        ...
 
     def ahead(self, at: Evaluation, rate: Floats) -> float:
         """Whether a direction points away from the kink since the committed state.
 
         Positive if so, negative if it points back, 0 where the path has no kink.
         """
-        ...
 
     def around(
         self, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
@@ -185,15 +170,12 @@ class PathSystem(Protocol):
 
         Also the direction there; None where there is no kink within a distance.
         """
-        ...
 
     def has_corner(self, base: Point, point: Point, period: float) -> bool:
         """Whether a law of the structure has a corner between two near equilibria."""
-        ...
 
     def commit(self) -> None:
         """Accept the last evaluated state."""
-        ...
 
 
 class SmoothPath:

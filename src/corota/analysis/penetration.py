@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 import corota._core as _core
-from corota.analysis.distributed_forces import LoadSum, evaluate
+from corota.analysis.distributed_forces import Distribution, LoadSum, evaluate
 from corota.errors import Location, ModelError
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class Edges(NamedTuple):
     bulge: Floats
 
 
-class PenetratingPressure:
+class PenetratingPressure(Distribution):
     """A fluid that follows a chain of edges from its start; the scale is its pressure.
 
     The fluid passes from a node along an edge if contact presses there, in the mean of both ends,
@@ -66,8 +66,6 @@ class PenetratingPressure:
     ModelError
         If no start is on the chain.
     """
-
-    follows = True
 
     def __init__(
         self,
@@ -105,18 +103,16 @@ class PenetratingPressure:
         """Start where another fluid on the same edges is, under the pressure that it has."""
         self.wet, self.committed, self.pressure = before.wet, before.committed, before.pressure
 
-    def set_mass(self, kind: str) -> None:
-        """See :class:`corota.analysis.distributed_forces.Distribution`."""
-
     def unit(self) -> Floats:
-        """See :class:`corota.analysis.distributed_forces.Distribution`."""
+        return self._reference()  # the fluid moves
+
+    def _reference(self) -> Floats:
         force = np.zeros(self.system.n_dofs)
         for edges in self._loaded():
             force += evaluate(self.system, edges.pressure, None, 1.0)[0]
         return force
 
     def add(self, scale: float, u: Floats, to: LoadSum) -> None:
-        """See :class:`corota.analysis.distributed_forces.Distribution`."""
         for edges in self._loaded():
             force, entries = evaluate(self.system, edges.pressure, to.middle(u), scale)
             to.force += force
@@ -193,8 +189,7 @@ class PenetratingPressure:
     def _next(self, may: Bools) -> Bools:
         """Dry edges that begin where the fluid is, of those that it may pass."""
         there = self.start | self._wet_nodes
-        out: Bools = there[self.chain.nodes[:, :2]].any(axis=1) & may & ~self.wet
-        return out
+        return there[self.chain.nodes[:, :2]].any(axis=1) & may & ~self.wet
 
     def _passes(self, contact: Floats, soft: Bools) -> Bools:
         """Edges along which contact does not press too hard, shape (n,).

@@ -55,7 +55,6 @@ class AtVelocity(Rule):
         self.v = v
 
     def point(self, u: Floats, step_time: float) -> StatePoint:
-        """The state with its velocity."""
         return StatePoint(u, step_time, self.v, np.zeros(len(u)))
 
 

@@ -249,13 +249,7 @@ def _rigid_motions(linear: Linearized, place: Floats) -> tuple[Floats, Floats]:
     points = system.model.mesh.points
     current = points + system.by_node(linear.u)[:, :2] if system.nlgeom else points
     arm = current - place
-    one, zero = np.ones(len(arm)), np.zeros(len(arm))
-    fields = (
-        np.stack([one, zero, zero], axis=1),
-        np.stack([zero, one, zero], axis=1),
-        np.stack([-arm[:, 1], arm[:, 0], one], axis=1),
-    )
-    return np.stack([system.from_nodes(values.ravel()) for values in fields], axis=1), arm
+    return system.rigid_motions(arm), arm
 
 
 def _meet(some: Ints, others: Ints) -> bool:

@@ -76,12 +76,10 @@ def _attributes(value: object) -> dict[str, object]:
 
 def _recomputed(kind: type) -> frozenset[str]:
     """Attributes that a class does not store."""
-    found: frozenset[str] = getattr(kind, "recomputed", frozenset())
-    return found
+    return getattr(kind, "recomputed", frozenset())
 
 
 def _parts(value: object) -> dict[str, object]:
-    """Attributes of an object, with or without a dict."""
     slots = [name for kind in type(value).__mro__ for name in getattr(kind, "__slots__", ())]
     own = {name: getattr(value, name) for name in slots if hasattr(value, name)}
     return own | getattr(value, "__dict__", {})

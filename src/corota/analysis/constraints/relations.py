@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import skew
+
 if TYPE_CHECKING:
     from corota.arrays import Bools, Floats, Ints
     from corota.errors import Location
@@ -94,15 +96,12 @@ class LinearRelation(Relation):
     rotates: Bools
 
     def values(self, u: Floats) -> Floats:
-        """See :class:`Relation`."""
         return np.array([self.row @ u[self.masters] + self.constant])
 
     def jacobian(self, u: Floats) -> Floats:
-        """See :class:`Relation`."""
         return self.row[None, :]
 
     def secant(self, begin: Floats, end: Floats) -> Floats:
-        """See :class:`Relation`."""
         if not (self.nlgeom and self.rotates.any()):
             return self.row[None, :]
         dofs = np.concatenate([self.dependent, self.masters])
@@ -111,20 +110,15 @@ class LinearRelation(Relation):
         return out
 
 
-def _skew(v: Floats) -> Floats:
-    """Vectors rotated by a right angle, shape (n, 2)."""
-    return np.stack([-v[:, 1], v[:, 0]], axis=1)
-
-
 def _turned(v: Floats, angle: float) -> Floats:
     """Vectors rotated by an angle, shape (n, 2)."""
-    out: Floats = np.cos(angle) * v + np.sin(angle) * _skew(v)
+    out: Floats = np.cos(angle) * v + np.sin(angle) * skew(v)
     return out
 
 
 def _turned_less(v: Floats, angle: float) -> Floats:
     """``(R - I) v`` without cancellation at small angles, shape (n, 2)."""
-    out: Floats = -2.0 * np.sin(0.5 * angle) ** 2 * v + np.sin(angle) * _skew(v)
+    out: Floats = -2.0 * np.sin(0.5 * angle) ** 2 * v + np.sin(angle) * skew(v)
     return out
 
 
@@ -156,15 +150,13 @@ class Follow(Relation):
     linear = False
 
     def values(self, u: Floats) -> Floats:
-        """See :class:`Relation`."""
         x, y, phi = u[self.masters]
-        arm = _turned_less(self.arm, phi) if self.nlgeom else phi * _skew(self.arm)
+        arm = _turned_less(self.arm, phi) if self.nlgeom else phi * skew(self.arm)
         move = arm + self.axes @ np.array([x, y])
         out: Floats = (self.axis[:, :2] * move).sum(axis=1) + self.axis[:, 2] * phi
         return out
 
     def jacobian(self, u: Floats) -> Floats:
-        """See :class:`Relation`."""
         return self._by(_turned(self.arm, u[self.masters[2]] if self.nlgeom else 0.0))
 
     def secant(self, begin: Floats, end: Floats) -> Floats:
@@ -175,14 +167,13 @@ class Follow(Relation):
         return self._by(0.5 * (_turned(self.arm, begin[phi]) + _turned(self.arm, end[phi])))
 
     def _by(self, arm: Floats) -> Floats:
-        lever = _skew(arm)
+        lever = skew(arm)
         out = np.empty((len(self.dependent), 3))
         out[:, :2] = self.axis[:, :2] @ self.axes
         out[:, 2] = (self.axis[:, :2] * lever).sum(axis=1) + self.axis[:, 2]
         return out
 
     def geometric_stiffness(self, u: Floats, force: Floats) -> Floats:
-        """See :class:`Relation`."""
         out = np.zeros((3, 3))
         if self.nlgeom:
             arm = _turned(self.arm, u[self.masters[2]])
@@ -190,7 +181,6 @@ class Follow(Relation):
         return out
 
     def curve(self, u: Floats, v: Floats) -> Floats:
-        """See :class:`Relation`."""
         if not self.nlgeom:
             return np.zeros(len(self.dependent))
         phi = self.masters[2]
@@ -239,18 +229,18 @@ class Mean(Relation):
         move: Floats = np.einsum("nij,nj->ni", self.axes, local)
         if not self.nlgeom:
             inertia = float(self.weight @ (self.arm**2).sum(axis=1))
-            turn = float(self.weight @ (_skew(self.arm) * move).sum(axis=1)) / inertia
+            turn = float(self.weight @ (skew(self.arm) * move).sum(axis=1)) / inertia
             return move, turn, inertia
         now = self.arm + move - self.weight @ move
         along = float(self.weight @ (self.arm * now).sum(axis=1))
-        across = float(self.weight @ (_skew(self.arm) * now).sum(axis=1))
+        across = float(self.weight @ (skew(self.arm) * now).sum(axis=1))
         return move, float(np.arctan2(across, along)), float(np.hypot(along, across))
 
     def values(self, u: Floats) -> Floats:
         """See :class:`Relation`; the rotation is the one nearest to that in `u`."""
         move, turn, _ = self._fit(u)
         offset = self.offset[None]
-        swing = _turned_less(offset, turn) if self.nlgeom else turn * _skew(offset)
+        swing = _turned_less(offset, turn) if self.nlgeom else turn * skew(offset)
         mean = self.weight @ move + swing[0]
         out: Floats = self.axis[:, :2] @ mean
         rotation = self.axis[:, 2] != 0.0
@@ -264,12 +254,11 @@ class Mean(Relation):
         if not self.nlgeom:
             turn = 0.0
         eta = _turned(self.arm, turn) * (self.weight / size)[:, None]
-        gamma = np.einsum("nji,nj->ni", self.axes, _skew(eta)).ravel()
+        gamma = np.einsum("nji,nj->ni", self.axes, skew(eta)).ravel()
         eps = np.einsum("nji,nj->ni", self.axes, eta).ravel()
         return gamma, eps, _turned(self.offset[None], turn)[0]
 
     def jacobian(self, u: Floats) -> Floats:
-        """See :class:`Relation`."""
         gamma, _, offset = self._gradients(u)
         return self._by(gamma, offset)
 
@@ -285,7 +274,7 @@ class Mean(Relation):
         eta = self.weight[:, None] * mean(self.arm)
         middle = self.arm + 0.5 * (move0 + move1)
         middle -= self.weight @ middle
-        gamma = np.einsum("nji,nj->ni", self.axes, _skew(eta) / (eta * middle).sum()).ravel()
+        gamma = np.einsum("nji,nj->ni", self.axes, skew(eta) / (eta * middle).sum()).ravel()
         return self._by(gamma, mean(self.offset[None])[0])
 
     def _by(self, gamma: Floats, offset: Floats) -> Floats:
@@ -295,7 +284,6 @@ class Mean(Relation):
         return out
 
     def geometric_stiffness(self, u: Floats, force: Floats) -> Floats:
-        """See :class:`Relation`."""
         if not self.nlgeom:
             return np.zeros((len(self.masters), len(self.masters)))
         gamma, eps, offset = self._gradients(u)
@@ -307,7 +295,6 @@ class Mean(Relation):
         return out
 
     def curve(self, u: Floats, v: Floats) -> Floats:
-        """See :class:`Relation`."""
         if not self.nlgeom:
             return np.zeros(len(self.dependent))
         gamma, eps, offset = self._gradients(u)

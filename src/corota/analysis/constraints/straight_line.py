@@ -79,7 +79,6 @@ class OnLine(Relation):
         return node - first, last - first
 
     def near_its_limit(self, u: Floats) -> str:
-        """See :class:`Relation`."""
         if not self.nlgeom:
             return ""
         t = self._places(u)[1]
@@ -94,7 +93,6 @@ class OnLine(Relation):
         )
 
     def values(self, u: Floats) -> Floats:
-        """See :class:`Relation`."""
         if not self.nlgeom:
             return self.jacobian(u) @ u[self.masters]
         w, t = self._places(u)
@@ -102,15 +100,13 @@ class OnLine(Relation):
         return np.array([-(w @ (S @ t)) / size])
 
     def jacobian(self, u: Floats) -> Floats:
-        """See :class:`Relation`."""
         if not self.nlgeom:
             n, _, size = self._forms(*self._start())
             return -n[None, :] / size
         w, t = self._places(u)
         n, d, size = self._forms(w, t)
         ratio = float(w @ (S @ t)) / size
-        out: Floats = -(n - ratio * d)[None, :] / size
-        return out
+        return -(n - ratio * d)[None, :] / size
 
     def _hessian(self, u: Floats) -> Floats:
         """Second derivative of the dependent by the masters, shape (5, 5)."""
@@ -122,15 +118,12 @@ class OnLine(Relation):
         second[0, 3:5] = self.axes[1].T @ (M @ self.free)
         second[1:3, 3:5] = self.axes[0].T @ M @ self.axes[1]
         second += second.T
-        out: Floats = -(second - np.outer(slope, d) - np.outer(d, slope)) / size
-        return out
+        return -(second - np.outer(slope, d) - np.outer(d, slope)) / size
 
     def geometric_stiffness(self, u: Floats, force: Floats) -> Floats:
-        """See :class:`Relation`."""
         return force[0] * self._hessian(u) if self.nlgeom else np.zeros((5, 5))
 
     def curve(self, u: Floats, v: Floats) -> Floats:
-        """See :class:`Relation`."""
         if not self.nlgeom:
             return np.zeros(1)
         rate = v[self.masters]
@@ -143,5 +136,4 @@ class OnLine(Relation):
         before, after = self._places(begin), self._places(end)
         n, d, size = self._forms(0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1]))
         ratio = -0.5 * float(self.values(begin)[0] + self.values(end)[0])
-        out: Floats = -(n - ratio * d)[None, :] / size
-        return out
+        return -(n - ratio * d)[None, :] / size

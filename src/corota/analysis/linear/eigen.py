@@ -84,10 +84,7 @@ def symmetric_modes(lin: LinearMotion, count: int) -> tuple[Floats, Floats]:
 
     def run(k: int, which: Literal["LM", "LA", "SA"]) -> tuple[Floats, Floats]:
         # With a shift, `which` goes by 1 / (square + shift). The stiffness itself is not used.
-        found: tuple[Floats, Floats] = eigsh(
-            weigh, k=k, M=weigh, sigma=-shift, OPinv=invert, v0=start, which=which
-        )
-        return found
+        return eigsh(weigh, k=k, M=weigh, sigma=-shift, OPinv=invert, v0=start, which=which)
 
     values, shapes = run(count, "LM" if factor.negative == 0 else "LA")
     if factor.negative != 0:

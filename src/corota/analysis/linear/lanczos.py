@@ -108,7 +108,6 @@ def largest(
 
 
 def _rows(x: Floats) -> Floats:
-    """Columns as the rows of an array of their own."""
     return np.array(x.T, order="C")
 
 

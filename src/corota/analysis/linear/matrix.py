@@ -66,8 +66,7 @@ class SymmetricPattern:
     @cached_property
     def diagonal(self) -> Ints:
         """Places of the diagonal, shape (n,)."""
-        places: Ints = self.indptr[1:].astype(np.int64) - 1
-        return places
+        return self.indptr[1:].astype(np.int64) - 1
 
     @cached_property
     def rows(self) -> Ints:
@@ -151,7 +150,6 @@ class SymmetricPattern:
         return self.communicator.largest(found)
 
     def _upper(self, values: Floats) -> Sparse:
-        """The upper triangle, scipy CSC."""
         import scipy.sparse as sp
 
         entries = (values, self.indices.astype(np.int32), self.indptr.astype(np.int32))
@@ -220,22 +218,18 @@ class AssembledPattern(SymmetricPattern):
         self._core = core
 
     def multiply(self, values: Floats, x: Floats) -> Floats:
-        """Product with a vector."""
         out: Floats = self._core.multiply(values, x)
         return self.communicator.sum(out)
 
     def impose(self, values: Floats, rhs: Floats, moved: Floats, constrained: Bools) -> None:
-        """See :meth:`SymmetricPattern.impose`."""
         if self.communicator.size > 1:
             super().impose(values, rhs, moved, constrained)
             return
         self._core.reduce(values, rhs, moved, constrained)
 
     def mask(self, values: Floats, constrained: Bools) -> None:
-        """See :meth:`SymmetricPattern.mask`."""
         self._core.mask(values, constrained)
 
 
 def _columns(x: Floats) -> list[Floats]:
-    """Views of the columns of a vector or matrix."""
     return [x] if x.ndim == 1 else list(x.T)

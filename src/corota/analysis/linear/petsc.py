@@ -110,7 +110,6 @@ class Petsc:
 
     @property
     def _handle(self) -> PETSc.Comm:
-        """Communicator of PETSc's objects."""
         if self.communicator.size > 1:
             return self.communicator.handle  # type: ignore[attr-defined]
         return self._petsc.COMM_SELF
@@ -361,7 +360,6 @@ class Petsc:
 
 
 def _columns(x: Floats) -> list[Floats]:
-    """Views of the columns of a vector or matrix."""
     return [x] if x.ndim == 1 else list(x.T)
 
 

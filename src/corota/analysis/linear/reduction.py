@@ -61,8 +61,7 @@ class Layout:
 
     def _keys(self, matrix: Sparse) -> Ints:
         row = np.repeat(np.arange(matrix.shape[0], dtype=np.int64), np.diff(matrix.indptr))
-        out: Ints = row * self.n + matrix.indices
-        return out
+        return row * self.n + matrix.indices
 
     def numbers(self, matrix: Sparse) -> Floats:
         """Numbers of a matrix with this pattern or a part of it."""

@@ -95,12 +95,10 @@ class Rows:
         self._sent = parts if entry is None else [entry[part] for part in parts]
 
     def _owners(self, degree: Ints, node: Ints) -> Ints:
-        """Process that owns each unknown."""
         size, rank = self.communicator.size, self.communicator.rank
         count = np.bincount(node, degree).astype(np.int64)
         code = self.communicator.largest(count * size + (size - 1 - rank))
-        owner: Ints = (size - 1 - code % size)[node]
-        return owner
+        return (size - 1 - code % size)[node]
 
     def _lay_out(self, row: Ints, column: Ints, bounds: Ints, loose: Bools) -> list[Any]:
         """Entries for each process; places of those of the other processes."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -26,11 +26,10 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints
+    from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.coupling import Coupling
-    from corota.analysis.linear.system import LinearSystem
-    from corota.analysis.timer import Timer
+    from corota.analysis.numbered_model import NumberedModel
     from corota.arrays import Bools, Floats, Ints
 
 
@@ -46,37 +45,12 @@ NULL = 1e-10
 MOST_COLUMNS = 8
 
 
-class Reduced(Protocol):
-    """Interface of the system without multipliers."""
-
-    n_dofs: int
-    node_of_dof: Ints
-    per_node: Ints
-    constraints: Constraints
-    link: LinearizedConstraints
-    linear: LinearSystem
-    free_motion_excluded: bool
-
-    @property
-    def constrained(self) -> Bools:
-        """Dofs that supports prescribe."""
-        ...
-
-    def singular(self, error: SingularError) -> SingularError:
-        """The error in terms of nodes."""
-        ...
-
-    def timed(self, phase: str) -> Timer:
-        """Add the time of a block to the profile."""
-        ...
-
-
 class SaddlePointSystem:
     """Solves the saddle-point systems of a model.
 
     Parameters
     ----------
-    system : Reduced
+    system : NumberedModel
     n : int
         Multipliers.
     kept : int
@@ -88,7 +62,7 @@ class SaddlePointSystem:
     #: Processes whose values add up to the matrix.
     communicator: Communicator = ALONE
 
-    def __init__(self, system: Reduced, n: int, kept: int = 0) -> None:
+    def __init__(self, system: NumberedModel, n: int, kept: int = 0) -> None:
         self.system, self.n, self.kept = system, n, kept
         if system.constraints.pattern.communicator is not ALONE:
             self.communicator = system.constraints.pattern.communicator
@@ -264,7 +238,6 @@ class SaddlePointSystem:
         return self._spread(x)[:, 0], x[self.nf :, 0]
 
     def _spread(self, x: Floats) -> Floats:
-        """Displacements of all dofs of a solution."""
         return self._link.expand(x[: self.nf])
 
     def _fixed(self, coupling: Coupling, data: Floats) -> tuple[Ints, Floats]:
@@ -338,7 +311,6 @@ class SaddlePointSystem:
         return np.concatenate(out)
 
     def _named(self, error: SingularError) -> SingularError:
-        """The same error in terms of nodes."""
         equation, mode = error.equation, error.mode
         if not 0 <= equation < self.nf and mode is not None:
             # A multiplier is named by the dof that moves most.

@@ -56,7 +56,6 @@ class LinearSolver(Protocol):
         after : ndarray of int, optional
             Equations of multipliers, to be eliminated after what they connect.
         """
-        ...
 
     def factorize(self, data: Floats) -> Inertia | None:
         """Factorize values of shape (nnz,).
@@ -71,11 +70,9 @@ class LinearSolver(Protocol):
         SingularError
             The matrix is singular to working precision.
         """
-        ...
 
     def solve(self, rhs: Floats) -> Floats:
         """Solution for right-hand sides of shape (n,) or (n, k); `rhs` is kept."""
-        ...
 
 
 class Multifrontal:

@@ -96,17 +96,14 @@ class MaskedLu:
         own = np.flatnonzero((rows == columns) & constrained[columns])
         size = np.abs(matrix.data[own])
         data[own] = np.where(size > 0.0, size, 1.0)
-        if not self._same(matrix) or not np.array_equal(constrained, self._held):
+        old, new = (self._indptr, self._indices), (matrix.indptr, matrix.indices)
+        same = all(map(np.array_equal, old, new))
+        if not same or not np.array_equal(constrained, self._held):
             # Newly prescribed or released dofs are checked for free motions with the pattern.
             self._solver.analyze(matrix.indptr, matrix.indices, node)
             self._indptr, self._indices = matrix.indptr, matrix.indices
             self._held = constrained.copy()
         self._solver.factorize(data)
-
-    def _same(self, matrix: Sparse) -> bool:
-        return np.array_equal(matrix.indptr, self._indptr) and np.array_equal(
-            matrix.indices, self._indices
-        )
 
     def solve(self, rhs: Floats) -> Floats:
         """Solution for right-hand sides of shape (n,) or (n, k)."""

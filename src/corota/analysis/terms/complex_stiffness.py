@@ -71,8 +71,6 @@ class ComplexStiffness:
 
 
 class _Part:
-    """The elements of one block."""
-
     def __init__(self, lin: LinearMotion, points: Floats, index: int, rates: Floats) -> None:
         self.system, self.points, self.index = lin.system, points, index
         self.material = cast("Viscoelastic", lin.system.own_blocks[index].section.material)

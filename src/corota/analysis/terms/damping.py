@@ -42,7 +42,6 @@ class Damping(Term):
         self.mass = mass_damping(inertia.system, u, inertia.kind)
 
     def add(self, point: StatePoint, at: Evaluation) -> None:
-        """Add the damping of `at`, and its derivative by velocity."""
         system, v, values, weight = self.inertia.system, point.v, at.values, point.weights[1]
         force = np.zeros(len(v))
         if self.per_mass:
@@ -116,7 +115,6 @@ def mass_damping(system: System, u: Floats, mass: str) -> Floats | None:
 
 
 def _mass(system: System, u: Floats, kind: str) -> Floats:
-    """Mass matrix of the active blocks."""
     here, rest = system.in_space(u), np.zeros(system.n_dofs)
     values = system.pattern.zeros()
     force, scale = np.zeros((2, system.n_dofs))

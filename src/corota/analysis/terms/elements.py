@@ -52,7 +52,6 @@ class Elements(Term):
         return self.user.notes
 
     def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
-        """Start a step at a total time."""
         self.begun, self.seen, self.reached = time, 0.0, 0.0
         self.passes = hasattr(step, "lasting")
         self.lasting = getattr(step, "lasting", False)
@@ -225,7 +224,6 @@ class Elements(Term):
             system.core.restore_state(values, lengths)
 
     def commit(self) -> None:
-        """Accept the last evaluated state."""
         self.system.core.commit()
         self.user.commit()
         self.reached = self.seen

@@ -203,8 +203,7 @@ class Linearized:
         padded = np.concatenate(
             [found[self.free], np.zeros((self.n_multipliers, *force.shape[1:]))]
         )
-        out: Floats = padded[self.active]
-        return out
+        return padded[self.active]
 
     def restrict(self, u: NDArray[Kind]) -> NDArray[Kind]:
         """Changes of all dofs as those of all unknowns; multipliers stay."""
@@ -238,8 +237,7 @@ class Linearized:
             normal = (rows.T @ rows).tocsc()
             trace = COMPLIANCE * normal.diagonal().max()
             self._normal = splu(normal + trace * sp.eye_array(normal.shape[0], format="csc"))
-        out: Floats = self._hard @ self._normal.solve(-(rows.T @ force[loose]))
-        return out
+        return self._hard @ self._normal.solve(-(rows.T @ force[loose]))
 
     def expand(self, z: Any) -> Any:
         """Changes of all dofs from those of all unknowns; complex ones too."""

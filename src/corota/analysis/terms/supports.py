@@ -136,7 +136,6 @@ class Supports:
         self.history.set(places, u[places], 0)
 
     def _release(self, items: list[Fixed]) -> None:
-        """End the supports of a place in some directions."""
         ended: list[Fixed] = []
         stay: list[Fixed] = []
         for support in self.acting:
@@ -177,7 +176,6 @@ class Supports:
                 )
 
     def _refuse_conflicts(self, items: list[Fixed], nodes: list[Ints]) -> None:
-        """Refuse a dof that is given two values at once."""
         if not items:
             return
         dofs = self._dofs(items, nodes)[2]
@@ -225,13 +223,11 @@ class Supports:
             on = factors.moves_on[history.amplitude]
             begun = factors.of_amplitudes(0.0)[history.amplitude[on]]
             values[on] += history.begin[on] - history.end[on] * begun
-        out: Floats = np.where(self.constrained, values, u)
-        return out
+        return np.where(self.constrained, values, u)
 
     def change(self) -> Floats:
         """Change per unit of load factor, 0 at free dofs; shape (n_dofs,)."""
-        out: Floats = np.where(self.constrained, self.history.end - self.history.begin, 0.0)
-        return out
+        return np.where(self.constrained, self.history.end - self.history.begin, 0.0)
 
     def rates(self, step_time: float, window: float) -> tuple[Floats, Floats]:
         """Velocity and acceleration of prescribed dofs at a time, 0 elsewhere; shapes (n_dofs,).

@@ -111,7 +111,6 @@ class Term(Protocol):
         derivatives by displacement and velocity are multiplied by the `weights` of the point. The
         tangent is not needed where `at.values` is empty.
         """
-        ...
 
     def holds(self, time: float) -> bool:
         """Whether force and tangent of the last evaluation are those of another step time."""

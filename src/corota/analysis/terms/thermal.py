@@ -46,8 +46,6 @@ IN, ZZ = [0, 1, 3], 2
 
 @dataclass
 class _Block:
-    """A block with free strains."""
-
     index: int
     nodes: Ints
     shape: Floats  # (p, k)

@@ -41,8 +41,6 @@ _ACROSS = {
 
 @dataclass
 class _Block:
-    """A block with a user-defined material."""
-
     index: int
     material: UserMaterial
     plane: str

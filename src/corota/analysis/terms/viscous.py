@@ -20,6 +20,7 @@ import numpy as np
 
 import corota._core as _core
 from corota.analysis.terms.user_material import UserBlocks
+from corota.arrays import skew
 from corota.errors import ModelError
 from corota.model import elements
 from corota.model.blocks import BlockOfCells, core_input
@@ -161,17 +162,17 @@ def _change(block: _Block, begin: Floats, end: Floats, v: Floats, dt: float) -> 
         move = u.reshape(n, nodes, each)[:, :, :2]
         x = block.arm + move - move.mean(axis=1, keepdims=True)
         along = (block.arm * x).sum(axis=(1, 2))
-        across = (_skew(block.arm) * x).sum(axis=(1, 2))
+        across = (skew(block.arm) * x).sum(axis=(1, 2))
         return x, np.stack([along, across]) / np.hypot(along, across)
 
     (x0, r0), (x1, r1) = placed(begin), placed(end)
     x, (c, s) = 0.5 * (x0 + x1), 0.5 * (r0 + r1)
-    eta = c[:, None, None] * block.arm + s[:, None, None] * _skew(block.arm)
-    gamma = _skew(eta) / (eta * x).sum(axis=(1, 2))[:, None, None]
+    eta = c[:, None, None] * block.arm + s[:, None, None] * skew(block.arm)
+    gamma = skew(eta) / (eta * x).sum(axis=(1, 2))[:, None, None]
     row = np.zeros((n, nodes, each))
     row[:, :, :2] = gamma
     column = np.ones((n, nodes, each))
-    column[:, :, :2] = _skew(x)
+    column[:, :, :2] = skew(x)
     row, column = row.reshape(n, size), column.reshape(n, size)
     less = np.eye(size) - column[:, :, None] * row[:, None, :]
     out = less.reshape(n, nodes, each, size).copy()
@@ -189,8 +190,3 @@ def _change(block: _Block, begin: Floats, end: Floats, v: Floats, dt: float) -> 
         out[:, :, 2] *= (arc / d)[:, :, None]
     local: Floats = out.reshape(n, size, size)
     return local
-
-
-def _skew(v: Floats) -> Floats:
-    """Vectors rotated by a right angle, shape (..., 2)."""
-    return np.stack([-v[..., 1], v[..., 0]], axis=-1)
