@@ -17,8 +17,9 @@ multiplier makes the state fixed in what the path prescribes.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -85,20 +86,25 @@ class Adjoint:
         return np.concatenate([self.forces, zero], axis=1)
 
 
-class Field(Protocol):
-    """Many numbers of the elements: see :class:`corota.gradients.parameters.Field`."""
+class Field(ABC):
+    """Many numbers of the elements at once, by derivatives of the core."""
 
+    @abstractmethod
     def wanted(self) -> str:
         """Derivative of the core that it takes."""
-        ...
 
+    @abstractmethod
     def gather(self, trajectory: Trajectory, found: dict[str, Any]) -> Floats:
         """Gradient from derivatives of the elements."""
-        ...
 
+    @abstractmethod
     def require(self, trajectory: Trajectory, adjoint: Adjoint) -> None:
-        """Refuse what depends on it beside the elements."""
-        ...
+        """Refuse what depends on the parameter beside the elements.
+
+        Raises
+        ------
+        UnsupportedError
+        """
 
 
 @dataclass

@@ -74,8 +74,7 @@ class Tangent:
 
     def restrict(self, vector: Floats) -> Floats:
         """Entries of the active unknowns."""
-        out: Floats = vector[self.free][self.active]
-        return out
+        return vector[self.free][self.active]
 
     def expand(self, x: Floats) -> Floats:
         """Changes of all dofs, shape (n_dofs,)."""
@@ -105,11 +104,9 @@ class LimitLoad(SpecialMeasure):
     mode: Any = field(default=None, init=False, repr=False)
 
     def prepare(self, results: Results) -> None:
-        """Take the limit point of the run."""
         self.frame, self.mode = _critical(results, "limit", self.index)
 
     def value(self, point: Point) -> float:
-        """The load factor."""
         return point.increment.factor
 
     def direct(self, point: Point) -> float:
@@ -157,11 +154,9 @@ class BifurcationLoad(SpecialMeasure):
     rate: float = field(default=1.0, init=False, repr=False)
 
     def prepare(self, results: Results) -> None:
-        """Take the bifurcation point of the run."""
         self.frame, self.mode = _critical(results, "bifurcation", self.index)
 
     def value(self, point: Point) -> float:
-        """The load factor."""
         return point.increment.factor
 
     def direct(self, point: Point) -> float:
@@ -233,7 +228,6 @@ class Frequency(SpecialMeasure):
     mass: str = field(default="consistent", init=False, repr=False)
 
     def prepare(self, results: Results) -> None:
-        """Take the mode of the run."""
         own = [m for m in results.modes if m.kind == "frequency"]
         own = [m for m in own if self.step is None or m.step == self.step]
         if not own or self.mode >= len(own[-1].factors):
@@ -255,7 +249,6 @@ class Frequency(SpecialMeasure):
         self.frame = next(own_frames)
 
     def value(self, point: Point) -> float:
-        """The frequency."""
         return self.found
 
     def direct(self, point: Point) -> float:
@@ -362,7 +355,6 @@ def _secant(function: Callable[[float], float], start: float, step: float, what:
 
 
 def _full(system: System, at: Evaluation) -> Any:
-    """Tangent of all unknowns, scipy CSC."""
     matrix = system.pattern.full(at.values).tocsr()
     if at.load_stiffness is not None:
         rows, columns, values = at.load_stiffness
@@ -372,7 +364,6 @@ def _full(system: System, at: Evaluation) -> Any:
 
 
 def _reduced(system: System, u: Floats, time: float) -> Any:
-    """Tangent of all unknowns at a state, scipy CSC."""
     tangent = system.evaluate(u, time)
     out = _full(system, tangent)
     system.return_tangent(tangent)

@@ -50,7 +50,6 @@ def _parts(system: System, u: Floats, time: float, surfaces: Surfaces) -> tuple[
 
 
 def _by_dofs(dofs: Ints, function: Callable[[int, float], Floats], step: float) -> Floats:
-    """Derivatives by several dofs, one column each."""
     columns = [all_derivatives(partial(function, int(dof)), step) for dof in dofs]
     return np.stack(columns, axis=1)
 

@@ -146,7 +146,6 @@ class Combination(Measure):
         self.parts, self.function, self.partials = list(parts), function, partials
 
     def value(self, point: Point) -> float:
-        """Value at a state; parts of other frames cannot be evaluated at one point."""
         return self.function([part.value(point) for part in self.parts])
 
 
@@ -204,11 +203,9 @@ class Displacement(Measure):
     state_only = True
 
     def value(self, point: Point) -> float:
-        """Value at a state."""
         return float(self.by_displacement(point) @ point.u)
 
     def by_displacement(self, point: Point) -> Floats:
-        """The weights of the nodes."""
         return _mean(point, self.where, self.dof, mean=True)
 
 
@@ -241,7 +238,6 @@ class Velocity(Measure):
         return float(self.by_velocity(point) @ point.v)
 
     def by_velocity(self, point: Point) -> Floats:
-        """The weights of the nodes."""
         return _mean(point, self.where, self.dof, mean=True)
 
 
@@ -262,7 +258,6 @@ class Reaction(Measure):
     state_only = True
 
     def value(self, point: Point) -> float:
-        """Value at a state."""
         return float(self.by_reaction(point) @ point.reaction)
 
     def direct(self, point: Point) -> float:
@@ -300,7 +295,6 @@ class LoadFactor(Measure):
     state_only = True
 
     def value(self, point: Point) -> float:
-        """Value at a state."""
         return point.increment.factor
 
     def direct(self, point: Point) -> float:
@@ -308,7 +302,6 @@ class LoadFactor(Measure):
         return 0.0
 
     def by_factor(self, point: Point) -> float:
-        """One."""
         return 1.0
 
 
@@ -324,7 +317,6 @@ class StrainEnergy(Measure):
     frame: int = -1
 
     def value(self, point: Point) -> float:
-        """Value at a state."""
         here = point.system.in_space(point.u)
         return float(sum(b["total_energy"] for b in fields_of(point.system.core, here, point)))
 
@@ -360,7 +352,6 @@ class Mass(Measure):
     frame: int = -1
 
     def value(self, point: Point) -> float:
-        """Value at a state."""
         return _volume(point, self.cells, weighed=True)
 
 
@@ -379,7 +370,6 @@ class Area(Measure):
     frame: int = -1
 
     def value(self, point: Point) -> float:
-        """Value at a state."""
         return _volume(point, self.cells, weighed=False)
 
 
@@ -403,7 +393,6 @@ class Width(Measure):
     frame: int = -1
 
     def value(self, point: Point) -> float:
-        """Value at a state."""
         mesh = point.system.model.mesh
         found, edges = [], {}
         for name in (self.one, self.other):
@@ -500,7 +489,6 @@ class Stress(Measure):
         self._component = components.get(self.variable)
 
     def value(self, point: Point) -> float:
-        """Value at a state."""
         system = point.system
         fields = fields_of(system.core, system.in_space(point.u), point)
         wanted = _cells(point, self.cells)
@@ -512,11 +500,9 @@ class Stress(Measure):
         return self._norm(size, volume)
 
     def by_displacement(self, point: Point) -> Floats:
-        """Derivatives of the stresses of each element by its dofs."""
         return self._differentiate(point, histories=False)[0]
 
     def by_histories(self, point: Point) -> list[Floats] | None:
-        """Derivatives of the stresses of each element by its history."""
         if not any(len(h) for h in point.system.core.histories(False)):
             return None
         return self._differentiate(point, histories=True)[1]
@@ -587,5 +573,4 @@ class Stress(Measure):
         if self.p == 1.0:
             return share
         norm = self._norm(size, volume) or 1.0
-        out: Floats = share * (size / norm) ** (self.p - 1.0)
-        return out
+        return share * (size / norm) ** (self.p - 1.0)

@@ -368,7 +368,6 @@ def _by_scipy(
 def _scale(
     start: Floats, bounds: Sequence[tuple[float, float]] | None, sizes: ArrayLike | None
 ) -> Floats:
-    """Sizes of the parameters."""
     if sizes is not None:
         given = np.broadcast_to(np.asarray(sizes, dtype=float), start.shape)
         if not (given > 0.0).all():

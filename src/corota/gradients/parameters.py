@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError, UnsupportedError
+from corota.gradients.adjoint import Adjoint, Field
 from corota.model import elements
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from corota.arrays import Floats
-    from corota.gradients.adjoint import Adjoint
     from corota.gradients.trajectory import Trajectory
     from corota.model.model import Model
 
@@ -44,27 +44,6 @@ class Parameter(ABC):
         values = np.abs(np.ravel(self.values(model)))
         most = float(values.max(initial=0.0)) or 1.0
         return np.where(values > 0.0, values, most)
-
-
-class Field(ABC):
-    """Many numbers of the elements at once, by derivatives of the core."""
-
-    @abstractmethod
-    def wanted(self) -> str:
-        """Derivative of the core that it takes."""
-
-    @abstractmethod
-    def gather(self, trajectory: Trajectory, found: dict[str, Any]) -> Floats:
-        """Gradient from derivatives of the elements."""
-
-    @abstractmethod
-    def require(self, trajectory: Trajectory, adjoint: Adjoint) -> None:
-        """Refuse what depends on the parameter beside the elements.
-
-        Raises
-        ------
-        UnsupportedError
-        """
 
 
 def _copy(model: Model) -> Model:
@@ -100,11 +79,9 @@ class Constant(Parameter):
         return material
 
     def values(self, model: Model) -> Floats:
-        """The constant, shape ()."""
         return np.array(float(getattr(self._material(model), self.name)))
 
     def vary(self, model: Model, index: int, change: float) -> Model:
-        """A model with another material in all sections of this one."""
         old, other = self._material(model), _copy(model)
         new = replace(old, **{self.name: getattr(old, self.name) + change})
         other.sections = [
@@ -125,15 +102,12 @@ class Orientation(Parameter):
     section: int = 0
 
     def values(self, model: Model) -> Floats:
-        """The angle, shape ()."""
         return np.array(float(model.sections[self.section].orientation))
 
     def sizes(self, model: Model) -> Floats:
-        """One radian."""
         return np.ones(1)
 
     def vary(self, model: Model, index: int, change: float) -> Model:
-        """A model with another angle of the section."""
         other = _copy(model)
         old = other.sections[self.section]
         other.sections[self.section] = replace(old, orientation=old.orientation + change)
@@ -173,7 +147,6 @@ class Attribute(Parameter):
         self.read, self.write, self.size = read, write, size
 
     def values(self, model: Model) -> Floats:
-        """What `read` gives."""
         return np.asarray(self.read(model), dtype=float)
 
     def sizes(self, model: Model) -> Floats:
@@ -183,7 +156,6 @@ class Attribute(Parameter):
         return np.full(self.values(model).size, float(self.size))
 
     def vary(self, model: Model, index: int, change: float) -> Model:
-        """A copy that was written with one value changed."""
         values = self.values(model).copy()
         values.reshape(-1)[index] += change
         other = _copy(model)
@@ -220,7 +192,6 @@ class Shape(Parameter):
             self.at = np.zeros(len(self.motion))
 
     def values(self, model: Model) -> Floats:
-        """The present parameters."""
         return self.at
 
     def sizes(self, model: Model) -> Floats:
@@ -232,7 +203,6 @@ class Shape(Parameter):
         return length / np.where(most > 0.0, most, 1.0)
 
     def vary(self, model: Model, index: int, change: float) -> Model:
-        """A model with moved nodes."""
         points = model.mesh.points
         if self.function is None:
             if self.motion.shape[1] != len(points):
@@ -258,15 +228,12 @@ class Positions(Field):
     """
 
     def wanted(self) -> str:
-        """Positions."""
         return "positions"
 
     def gather(self, trajectory: Trajectory, found: dict[str, Any]) -> Floats:
-        """The derivatives by node."""
         return np.array(found["positions"])
 
     def require(self, trajectory: Trajectory, adjoint: Adjoint) -> None:
-        """Refuse loads on edges and bodies, and constraints."""
         model = trajectory.model
         what = ""
         if trajectory.system.conditions.distributed.loads:
@@ -304,11 +271,9 @@ class Thickness(Field):
             raise InputError(f"a thickness is by element, node or section, not by {self.by!r}")
 
     def wanted(self) -> str:
-        """Thickness."""
         return "thickness"
 
     def gather(self, trajectory: Trajectory, found: dict[str, Any]) -> Floats:
-        """Sums over the points of elements, or of the elements at a node."""
         system, model = trajectory.system, trajectory.model
         count = {
             "element": model.mesh.n_cells,

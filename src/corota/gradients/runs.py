@@ -11,10 +11,10 @@ import numpy as np
 
 from corota.analysis.run import keep_nlgeom, solve
 from corota.errors import InputError, UnsupportedError
-from corota.gradients.adjoint import Adjoint, FieldSums, adjoints, control_row
+from corota.gradients.adjoint import Adjoint, Field, FieldSums, adjoints, control_row
 from corota.gradients.differences import derivative, step_between_kinks
 from corota.gradients.measures import Measure, SpecialMeasure, combine, leaves
-from corota.gradients.parameters import Field, Parameter
+from corota.gradients.parameters import Parameter
 from corota.gradients.sides import one_sided as limit
 from corota.gradients.sides import require_side
 from corota.gradients.store import HistoryStore
@@ -336,7 +336,6 @@ def _target(step: Step) -> tuple[list[Any], float]:
 
 
 def _steps_of(model: Model) -> list[Step]:
-    """The steps of a model as an analysis takes them."""
     listed = listed_steps(model.steps or [Static()])
     finite = any(section.material.local_strain for section in model.sections)
     return keep_nlgeom(listed, finite)[0]

@@ -259,7 +259,6 @@ class ShapeDesign:
     # -- extension ---------------------------------------------------------------------
 
     def _extend(self) -> Floats:
-        """Motion of all nodes from that of the boundaries."""
         mesh, n = self.base, self.base.n_nodes
         if not self._moved:
             return np.zeros((0, n, 2))
@@ -418,7 +417,6 @@ def _gradients(points: Floats, triangles: Ints) -> tuple[Floats, Floats]:
 
 
 def _laplace(points: Floats, triangles: Ints, share: Floats) -> sp.csr_array:
-    """Laplace's operator on triangles."""
     gradient, area = _gradients(points, triangles)
     values = np.einsum("eia,eib,e->eab", gradient, gradient, area * share)
     rows = np.repeat(triangles, 3, axis=1).ravel()

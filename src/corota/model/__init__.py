@@ -1,6 +1,7 @@
 """The model: plain data, valid or refused; no solver objects inside."""
 
 # SPDX-License-Identifier: BSD-3-Clause
+from corota.model.dofs import DOFS
 from corota.model.loads import (
     Amplitude,
     BodyForce,
@@ -14,7 +15,7 @@ from corota.model.loads import (
     NodalForce,
     Temperature,
 )
-from corota.model.model import DOFS, Model
+from corota.model.model import Model
 from corota.model.sections import Section
 
 __all__ = [

@@ -108,7 +108,6 @@ class CompiledMaterial(_Compiled):
 
     @property
     def default_strain(self) -> Literal["logarithmic", "linear"]:
-        """Local strain of sections that name none: a law with history may flow."""
         return "logarithmic" if self.states else "linear"
 
     def parameters(self, orientation: float = 0.0) -> list[float]:

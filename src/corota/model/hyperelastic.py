@@ -66,7 +66,6 @@ class Hyperelastic(SinglePoint, ABC):
         return float(tangent[0, 0] - 4.0 / 3.0 * tangent[2, 2])
 
     def compliance(self) -> Floats:
-        """Compliance at small strain."""
         shear, bulk = self.shear_modulus, self.bulk_modulus
         nu = 0.5 if self.incompressible else (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear)
         return isotropic_compliance(2.0 * shear * (1.0 + nu), nu)

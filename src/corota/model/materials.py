@@ -209,7 +209,6 @@ class Material(Brief):
             )
 
     def _check_motion(self) -> None:
-        """Density and damping."""
         if not (math.isfinite(self.rho) and self.rho >= 0.0):
             raise InputError(f"the density must be >= 0, not {self.rho}", self.where)
         if not (len(self.rayleigh) == 2 and all(0.0 <= c < math.inf for c in self.rayleigh)):

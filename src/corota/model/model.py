@@ -16,42 +16,20 @@ from corota.mesh import EDGES, selection
 from corota.model.attachments import Dashpot, PointMass
 from corota.model.constraints import Constraint, Coupling, Equation, LocalAxes, StraightLine
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
-from corota.model.dofs import DOFS as DOFS
 from corota.model.dofs import dof_index, dof_indices
 from corota.model.initial import InitialFields
 from corota.model.line_sections import LineSections
 from corota.model.loading import Loading
-from corota.model.loads import Amplitude as Amplitude
 from corota.model.loads import (
-    BodyForce as BodyForce,
+    Amplitude,
+    Fixed,
+    Force,
+    InitialStress,
+    InitialTemperature,
+    InitialVelocity,
+    Load,
 )
-from corota.model.loads import (
-    EdgeLoad as EdgeLoad,
-)
-from corota.model.loads import (
-    Fixed as Fixed,
-)
-from corota.model.loads import Force
-from corota.model.loads import (
-    InitialStress as InitialStress,
-)
-from corota.model.loads import (
-    InitialTemperature as InitialTemperature,
-)
-from corota.model.loads import (
-    InitialVelocity as InitialVelocity,
-)
-from corota.model.loads import (
-    Load as Load,
-)
-from corota.model.loads import (
-    NodalForce as NodalForce,
-)
-from corota.model.loads import (
-    Temperature as Temperature,
-)
-from corota.model.sections import Plane
-from corota.model.sections import Section as Section
+from corota.model.sections import Plane, Section
 from corota.model.stages import Stage, Stages
 from corota.model.units import Units
 from corota.renamed import accept_old_names

@@ -245,7 +245,6 @@ class Step(Brief, Loading, Settings):
                 )
 
     def _kinds(self) -> None:
-        """Name the kinds of loads that are removed."""
         given = self.new_loads
         wanted = (LOAD_KINDS if given else ()) if isinstance(given, bool) else given
         if unknown := set(wanted) - set(LOAD_KINDS):

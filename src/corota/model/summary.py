@@ -78,7 +78,6 @@ def material_lines(model: Model) -> list[str]:
 
 
 def _constants(material: Material) -> list[str]:
-    """Class of a material, its constants and its curve."""
     shown = [type(material).__name__]
     for name in ("E", "nu", "E1", "E2", "nu12", "G12", "rho"):
         value = getattr(material, name, None)

@@ -83,7 +83,6 @@ class UserMaterial(Material):
 
     @property
     def default_strain(self) -> LocalStrain:
-        """Local strain of sections that name none: a law with history may flow."""
         return "logarithmic" if self.members else "linear"
 
     def start(self, n: int, p: int) -> Floats:

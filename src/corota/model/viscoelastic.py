@@ -195,7 +195,6 @@ class Viscoelastic(SinglePoint):
 
     @property
     def _factor(self) -> float:
-        """Factor on the times."""
         if self.shift is None:
             return 1.0
         at = self.shift.T0 if self.temperature is None else self.temperature

@@ -112,7 +112,6 @@ def _name(entity: Any, layer: str) -> str:
 
 
 def _curves_of(entity: Any, kind: str, name: str, source: str) -> list[Curve] | None:
-    """Curves of an entity; None if it is none."""
     data = entity.dxf
     # Coordinates of the object: in a plane that is seen from below x runs the other way.
     way = -1.0 if data.hasattr("extrusion") and data.extrusion.z < 0.0 else 1.0

@@ -156,7 +156,6 @@ def _distinct(curves: list[Curve], ends: Ints, gap: float) -> list[int]:
 
 
 def _middle(curve: Curve) -> Floats:
-    """Point at half the length."""
     steps = np.hypot(*np.diff(curve.points, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     half = 0.5 * along[-1]

@@ -137,7 +137,6 @@ def _read(
 
 @contextmanager
 def _gmsh() -> Iterator[Any]:
-    """Gmsh with an empty model, for one outline."""
     try:
         import gmsh
     except (ImportError, OSError) as error:

@@ -297,7 +297,6 @@ def _ellipse_arc(
 
 
 def _curves(text: str, matrix: Floats, name: str, source: str) -> list[Curve]:
-    """Curves of the text of a path."""
     from fontTools.svgLib.path import parse_path
 
     pen = _Pen(matrix, name, source)
