@@ -25,7 +25,7 @@ def test_frames_without_stability_are_not_unstable(tmp_path: Path) -> None:
         assert "stable" not in stored.frames[0].scalars
         assert stored.frames[1].scalars["stable"] == 1.0
         assert np.isnan(stored.history("stable")[0])
-        from corota.plots.path import has_stability
+        from corota.plots.curves import has_stability
 
         assert not has_stability(stored)
 

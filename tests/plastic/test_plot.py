@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.plots.plastic import boundary
+from corota.plots.contour import boundary
 from corota.verification.plastic_models import perforated_strip
 
 matplotlib = pytest.importorskip("matplotlib")

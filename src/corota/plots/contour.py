@@ -12,7 +12,6 @@ from corota.errors import InputError
 from corota.plots import palette
 from corota.plots.figure import INK, PALE, body_figure, finish, look, plane_axes
 from corota.plots.lines import draw_links
-from corota.plots.plastic import draw_boundary
 from corota.plots.rigid import draw_rigid, with_rigid
 from corota.plots.surface import Surface, edge_lines, outline, surface
 from corota.results import variables as vf
@@ -22,7 +21,7 @@ from corota.results.table import NODAL, POSITIVE
 if TYPE_CHECKING:
     from os import PathLike
 
-    from corota.arrays import Floats
+    from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
     from corota.model.units import Units
     from corota.results.results import Results
@@ -395,3 +394,53 @@ def _between(colors: Any, norm: Any, levels: Floats) -> Any:
 
     middle = 0.5 * (levels[1:] + levels[:-1])
     return ListedColormap(colors(norm(middle)))
+
+
+def boundary(results: Results, frame: int = -1) -> Ints:
+    """Edges between cells with plastic strain at some point and cells without any.
+
+    Parameters
+    ----------
+    results : Results
+        With the variable ``PEEQ``.
+    frame : int
+
+    Returns
+    -------
+    ndarray of int, shape (n, 2)
+        Corner nodes of the edges.
+
+    Raises
+    ------
+    InputError
+        If the results have no plastic strain.
+    """
+    if "PEEQ" not in results.variables(frame):
+        raise InputError(
+            "there is no plastic strain (PEEQ) whose boundary could be drawn: plastic=True is for "
+            "models with a material that flows"
+        )
+    plastic = np.nan_to_num(results.cells("PEEQ", frame)) > 0.0
+    edges, flows = [], []
+    for offset, cells in zip(results.mesh.offsets, results.mesh.cells, strict=False):
+        if not cells.kind.startswith(("tri", "quad")):
+            continue
+        corners = cells.nodes[:, : 3 if cells.kind.startswith("tri") else 4]
+        pairs = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1)
+        edges.append(np.sort(pairs.reshape(-1, 2), axis=1))
+        flows.append(np.repeat(plastic[offset : offset + len(cells)], corners.shape[1]))
+    every, flow = np.concatenate(edges), np.concatenate(flows)
+    unique, index = np.unique(every, axis=0, return_inverse=True)
+    counts = np.bincount(index.ravel(), minlength=len(unique))
+    yielding = np.bincount(index.ravel(), weights=flow, minlength=len(unique))
+    found: Ints = unique[(counts == 2) & (yielding == 1)]
+    return found
+
+
+def draw_boundary(ax: Any, results: Results, frame: int, scale: float) -> None:
+    """Draw the elastic-plastic boundary on the deformed shape."""
+    from matplotlib.collections import LineCollection
+
+    positions = results.mesh.points + scale * results.frame(frame).U
+    lines = positions[boundary(results, frame)]
+    ax.add_collection(LineCollection(list(lines), colors="black", linewidths=1.2, zorder=4))

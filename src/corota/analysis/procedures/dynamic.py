@@ -15,16 +15,14 @@ from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, New
 from corota.analysis.increments import CUT, SAME
 from corota.analysis.newton import Settings
 from corota.analysis.procedures.explicit import explicit_step
-from corota.analysis.procedures.free_flight import FreeFlight
-from corota.analysis.procedures.motion import ConservingMotion, Driven, NewmarkMotion
-from corota.analysis.procedures.motion_output import EndForces
+from corota.analysis.procedures.free_flight import FreeFlight, deformation, rigid_rates
+from corota.analysis.procedures.motion import ConservingMotion, Driven, EndForces, NewmarkMotion
 from corota.analysis.procedures.motion_start import (
     admissible_velocity,
     check_density,
     resting,
     start_motion,
 )
-from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
 from corota.analysis.terms.contact.impact import Approach
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.analysis.terms.contact.relaxation import relax

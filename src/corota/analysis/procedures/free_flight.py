@@ -1,4 +1,4 @@
-"""Where Newton's method starts in an increment of a motion.
+"""Where Newton's method starts in an increment of a motion, and the rigid part of a motion.
 
 The start for an unconstrained body is its rigid motion: its iterations are then the same whether it
 rests or flies. Other bodies start from where they are.
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import Floats, distinct
+from corota.arrays import Floats, distinct, skew
 from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
@@ -86,3 +86,25 @@ class FreeFlight:
         flown[self.nodes, :2] = dt * travel[body] + change
         flown[self.nodes, 2] = turn[body]
         return u + system.from_nodes(flown)
+
+
+def rigid_rates(x: Floats, rates: Floats) -> Floats:
+    """Rigid velocity field that is nearest to given rates at points, shapes (n, 2)."""
+    arm = x - x.mean(axis=0)
+    mean = rates.mean(axis=0)
+    inertia = float((arm * arm).sum())
+    lever = skew(arm)
+    spin = float((lever * rates).sum()) / inertia if inertia > 0.0 else 0.0
+    out: Floats = mean + spin * lever
+    return out
+
+
+def deformation(reference: Floats, x: Floats, finite: bool = True) -> Floats:
+    """Displacements less the nearest rigid motion, finite or infinitesimal, shape (n, 2)."""
+    if not finite:
+        return x - reference - rigid_rates(reference, x - reference)
+    before, now = reference - reference.mean(axis=0), x - x.mean(axis=0)
+    along, across = float((before * now).sum()), float((skew(before) * now).sum())
+    size = np.hypot(along, across) or 1.0
+    out: Floats = now - (along * before + across * skew(before)) / size
+    return out

@@ -1,4 +1,4 @@
-"""Increments of time schemes: rates of the unknowns, and weights of the forces at both ends."""
+"""Increments of time schemes: rates, weights of the forces at both ends, and their output."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.acceleration import Acceleration
+from corota.analysis.evaluation import Evaluation
 from corota.analysis.rule import Rule
 from corota.analysis.terms.inertia import Inertia, MotionState
 from corota.analysis.terms.term import StatePoint
@@ -17,11 +17,49 @@ from corota.analysis.terms.term import StatePoint
 if TYPE_CHECKING:
     from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints
     from corota.analysis.equations import System
-    from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.damping import Damping
     from corota.analysis.terms.elements import Elements
     from corota.arrays import Bools, Floats
     from corota.model.schemes import Scheme
+
+
+#: Corrections before the first one that is changed: an iteration that converges well ends earlier.
+PLAIN = 5
+#: Differences of corrections that are combined, at most.
+DEPTH = 10
+#: Share of the largest singular value below which differences count as dependent.
+DEPENDENT = 1e-12
+
+
+class Acceleration:
+    """Combines the last corrections so that, were they linear in the unknowns, the next were zero.
+
+    D. G. Anderson, *Journal of the ACM* 12, 1965, 547-560; for Newton's method with an approximate
+    tangent N. N. Carlson & K. Miller, *SIAM Journal on Scientific Computing* 19, 1998, 728-765.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (n_dofs,)
+        Make the unknowns comparable.
+    """
+
+    def __init__(self, weights: Floats) -> None:
+        self.weights = weights
+        self._points: list[Floats] = []
+        self._corrections: list[Floats] = []
+
+    def improve(self, u: Floats, du: Floats) -> Floats:
+        """The correction to take at `u` in place of `du`, which the tangent gives there."""
+        self._points = [*self._points[-DEPTH:], u.copy()]
+        self._corrections = [*self._corrections[-DEPTH:], du]
+        if len(self._points) <= PLAIN:
+            return du
+        moved = np.diff(self._points, axis=0).T
+        changed = np.diff(self._corrections, axis=0).T
+        rows = self.weights[:, None]
+        share, *_ = np.linalg.lstsq(rows * changed, self.weights * du, rcond=DEPENDENT)
+        out: Floats = du - (moved + changed) @ share
+        return out
 
 
 @dataclass
@@ -243,3 +281,59 @@ class ConservingMotion(Motion):
         mean = self.increment(self.driven.u)[constrained] / self.dt
         out[constrained] = mean - 0.5 * (self.driven.v - self.start.v)[constrained]
         return out
+
+
+class EndForces:
+    """External forces and reactions at the end of an increment, for every scheme.
+
+    Schemes that weigh the equation between both ends have all forces of the end. The
+    energy-momentum scheme has those of the middle: stress and loads are taken again, inertia and
+    damping are extrapolated linearly from the last two middles.
+
+    Parameters
+    ----------
+    system : System
+
+    Attributes
+    ----------
+    at : Evaluation
+        Internal and external forces at the end.
+    reaction : ndarray, shape (n_dofs,)
+        By equilibrium there; zero where nothing is prescribed.
+    """
+
+    at: Evaluation
+    reaction: Floats
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        # Time from the instant of the last known inertia to the end of that increment.
+        self._lag = 0.0
+
+    def start(self, now: MotionState, contact: Floats) -> None:
+        """Take the forces at the start of a motion, in which contact has a force."""
+        internal = now.internal - contact
+        self.at = Evaluation(internal, now.external, internal, np.empty(0), None, now.link)
+        whole = now.reaction() - now.gathered(contact)
+        self.reaction = np.where(self.system.conditions.constrained, whole, 0.0)
+
+    def find(
+        self, motion: NewmarkMotion | ConservingMotion, contact: Floats, step_time: float
+    ) -> None:
+        """Find the forces at the end of an accepted increment, in which contact has a force."""
+        system, begin, end = self.system, motion.start, motion.end
+        inertia = end.inertia + end.damping
+        internal, external, link = end.internal, end.external, end.link
+        if hasattr(motion, "increment"):
+            half = 0.5 * motion.dt
+            share = half / (half + self._lag)
+            inertia = inertia + share * (inertia - begin.inertia - begin.damping)
+            self._lag = half
+            own = system.forces(end.u, step_time)
+            internal, external = own.internal, own.external
+            # Forces of the end have their moments about the masters as they lie there.
+            link = system.constraints.link(end.u)
+        internal = internal - contact
+        self.at = Evaluation(internal, external, internal, np.empty(0), None, link)
+        whole = link.gather(internal + inertia - external)
+        self.reaction = np.where(system.conditions.constrained, whole, 0.0)
