@@ -320,7 +320,9 @@ class Analysis:
 
         save = partial(self._save, number)
         self.observers.requests = self.requests[number - 1]
-        stops = self._stops()
+        # Those of outputs that the step keeps among them.
+        times = [o.time_points for o in self.observers.requests if o.time_points]
+        stops = [float(t) for name in times for t in self.model.time_points[name]]
         if state.resumption is not None and state.resumption.checkpoint.leave_step:
             self._leave(state)
         else:
@@ -450,12 +452,6 @@ class Analysis:
             self.warned.add(kind)
             self.results.notes.append(note)
             warnings.warn(note, stacklevel=3)
-
-    def _stops(self) -> list[float]:
-        """Step times requested by the outputs of a step, those that it keeps among them."""
-        tables = getattr(self.model, "time_points", {})
-        requests = [o for o in self.observers.requests if o.time_points]
-        return [float(t) for out in requests for t in tables[out.time_points]]
 
     def _save(
         self, number: int, state: State, increment: int, factor: float, scalars: dict[str, float]

@@ -41,6 +41,8 @@ FOUND = ("corota.model.paths",)
 SMALL = 1 << 15
 #: Kinds of arrays that are stored.
 KINDS = "biufcSU"
+#: Classes of sparse matrices that may be made from a tree.
+SPARSE = [f"{order}_{kind}" for order in ("coo", "csr", "csc") for kind in ("array", "matrix")]
 
 
 class UnsuitableState(CorotaError):
@@ -67,11 +69,6 @@ def _is_core(value: object) -> bool:
 
 def _is_code(value: object) -> bool:
     return callable(value) and not hasattr(type(value), "__dataclass_fields__")
-
-
-def _attributes(value: object) -> dict[str, object]:
-    skip = _recomputed(type(value))
-    return {k: v for k, v in _parts(value).items() if k not in skip}
 
 
 def _recomputed(kind: type) -> frozenset[str]:
@@ -182,8 +179,11 @@ class Writer:
             return {"int": int(value), "class": f"{module}:{kind.__name__}"}
         if module.startswith("corota.model") and module not in FOUND and not self._by_value:
             return {"model": True}
+        skip = _recomputed(kind)
         body = {
-            name: self.write(part, f"{place}.{name}") for name, part in _attributes(value).items()
+            name: self.write(part, f"{place}.{name}")
+            for name, part in _parts(value).items()
+            if name not in skip
         }
         return {"class": f"{module}:{kind.__qualname__}", "parts": body}
 
@@ -257,17 +257,15 @@ class Reader:
             return tuple(self._value(t, f) for t, f in _beside(tree["tuple"], old))
         if "code" in tree and "n" not in tree:
             return fresh
-        for kind in ("scalar", "complex", "bytes"):
-            if kind in tree:
-                return self._plain(kind, tree[kind])
+        if "scalar" in tree:
+            return self._arrays[tree["scalar"]][()]
+        if "complex" in tree:
+            return complex(*tree["complex"])
+        if "bytes" in tree:
+            return bytes.fromhex(tree["bytes"])
         if "built" not in tree and fresh is not None and id(fresh) in self._taken:
             fresh = None  # two places that were one when they were new
         return self._whole(tree, fresh)
-
-    def _plain(self, kind: str, body: Tree) -> Any:
-        if kind == "scalar":
-            return self._arrays[body][()]
-        return complex(*body) if kind == "complex" else bytes.fromhex(body)
 
     def _whole(self, tree: Tree, fresh: object) -> object:
         number = tree["n"]
@@ -318,15 +316,7 @@ class Reader:
         if "sparse" in tree:
             import scipy.sparse
 
-            names = (
-                "coo_array",
-                "csr_array",
-                "csc_array",
-                "coo_matrix",
-                "csr_matrix",
-                "csc_matrix",
-            )
-            if tree["sparse"] not in names:
+            if tree["sparse"] not in SPARSE:
                 raise UnsuitableState(f"{tree['sparse']} is not a sparse array")
             first, second, data = (self._arrays[i] for i in tree["parts"])
             coo = tree["sparse"].startswith("coo")

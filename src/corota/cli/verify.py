@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from corota.cli.progress import duration
-from corota.verification.catalogue import GROUPS, Problem, Value, chosen
+from corota.verification.catalogue import GROUPS, Problem, chosen
 from corota.verification.outcome import Outcome
 from corota.verification.runner import run as run_problems
 
@@ -51,7 +51,7 @@ def run(args: Any, terminal: Terminal) -> int:
 
         write_index(wanted, outcomes, args.pages)
     for line in table(outcomes):
-        terminal.line(_colored(line, terminal))
+        terminal.line(line.replace("MISSED", terminal.color("MISSED", "red")))
     missed = [o for o in outcomes if not o.ok]
     for outcome in missed:
         terminal.error(f"{outcome.name}: {_fault(outcome)}")
@@ -101,7 +101,7 @@ def cells(outcome: Outcome) -> list[tuple[str, ...]]:
                 f"{v.reference:.7g}",
                 f"{v.measured:.7g}",
                 f"{v.error:.1e}",
-                _tolerance(v),
+                "" if v.kind in ("at least", "at most") else f"{v.tolerance:.0e}",
                 "ok" if v.ok else "MISSED",
                 f"{outcome.seconds:.1f}" if k == 0 else "",
             )
@@ -110,12 +110,6 @@ def cells(outcome: Outcome) -> list[tuple[str, ...]]:
         text = (outcome.error or "no values").splitlines()[0][:60]
         rows.append((outcome.name, text, "", "", "", "", "MISSED", f"{outcome.seconds:.1f}"))
     return rows
-
-
-def _tolerance(value: Value) -> str:
-    if value.kind in ("at least", "at most"):
-        return ""
-    return f"{value.tolerance:.0e}"
 
 
 def table(outcomes: list[Outcome]) -> list[str]:
@@ -130,10 +124,6 @@ def table(outcomes: list[Outcome]) -> list[str]:
         ]
         lines.append("  ".join(parts).rstrip())
     return lines
-
-
-def _colored(line: str, terminal: Terminal) -> str:
-    return line.replace("MISSED", terminal.color("MISSED", "red"))
 
 
 def _fault(outcome: Outcome) -> str:

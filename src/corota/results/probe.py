@@ -226,7 +226,9 @@ class Line(Brief):
         """Table of distance, x, y and variables as a ``pandas.DataFrame``."""
         chosen = variables or ("U1", "U2")
         columns = {"distance": self.distance, "x": self.points[:, 0], "y": self.points[:, 1]}
-        return _pandas().DataFrame(columns | {name: self.values(name) for name in chosen})
+        return import_module("pandas").DataFrame(
+            columns | {name: self.values(name) for name in chosen}
+        )
 
     def plot(self, *variables: str, path: str | PathLike[str] | None = None, ax: Any = None) -> Any:
         """Draw variables over the distance; see :func:`corota.plots.along`."""
@@ -283,7 +285,3 @@ def chained(mesh: Mesh, edges: Ints) -> Ints:
         chain += begins[at][1:].tolist()
         at = chain[-1]
     return np.array(chain, dtype=np.int64)
-
-
-def _pandas() -> Any:
-    return import_module("pandas")

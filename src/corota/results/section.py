@@ -399,7 +399,7 @@ class Cut:
         self, crossing: _Crossing, state: Frame, positions: Floats, index: int
     ) -> Floats:
         at, weight, stress = _points(self.results, crossing, state, index)
-        slope = _slopes(crossing.kind, at)  # (p, k, 2)
+        slope = np.moveaxis(shape_gradients(crossing.kind, at), 1, 2)  # (p, k, 2)
         now = np.einsum("pki,nkj->npij", slope, positions[crossing.nodes])
         volume = weight * np.linalg.det(now)
         gradient = np.einsum("npij,pkj->npki", np.linalg.inv(now), slope)
@@ -459,11 +459,6 @@ def _weights(kind: str, at: Floats) -> Floats:
         return np.full(count, 4.0 / count)
     line = np.where(np.abs(at) < 1e-6, 8.0, 5.0) / 9.0
     return np.asarray(line.prod(axis=1))
-
-
-def _slopes(kind: str, at: Floats) -> Floats:
-    """Derivatives of the shape functions by the natural coordinates, shape (p, k, 2)."""
-    return np.moveaxis(shape_gradients(kind, at), 1, 2)
 
 
 def _resultant(where: Floats, values: Floats, center: Floats) -> tuple[Floats, float]:
