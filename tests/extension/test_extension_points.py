@@ -280,8 +280,8 @@ def test_deck_keyword(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
     def weight(deck: Any, card: Any) -> None:
         row = next(iter(card.rows()))
-        value = deck.real(card, row, 0, "the weight")
-        open_material(deck, card).rho = value / deck.parameter_number(card, "G", 9.81, 0.0)
+        value = row.number(0, "the weight")
+        open_material(deck, card).rho = value / card.number("G", 9.81, 0.0)
 
     monkeypatch.setitem(KEYWORDS, "WEIGHTPERVOLUME", Keyword(weight, "G", place="model"))
     assert ct.read(path).sections[0].material.rho == pytest.approx(5.0)
@@ -301,8 +301,8 @@ def test_deck_keyword_that_changes_the_model(
 
     def shift(deck: Any, card: Any) -> None:
         for row in card.rows():
-            by = tuple(deck.real(card, row, i, "the move") for i in (1, 2))
-            deck.later(stage, move, Draft("move", card, row, row.get(0), by))
+            by = tuple(row.reals(("x", "y"), start=1))
+            deck.later(stage, move, Draft("move", row, row.get(0), by))
 
     monkeypatch.setitem(KEYWORDS, "NODESHIFT", Keyword(shift, place="model"))
     path = tmp_path / "block.inp"

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from corota.io.deck.card import key
 from corota.io.deck.cards.output import WRITTEN
 from corota.io.deck.elements import ALIASES, ELEMENTS, LINES, OWN
 from corota.io.deck.keywords import KEYWORDS
-from corota.io.deck.lexer import key
 from corota.io.deck.refused import IGNORED, UNSUPPORTED
 
 PAGE = (Path(__file__).parents[2] / "docs" / "keywords.md").read_text(encoding="utf-8")

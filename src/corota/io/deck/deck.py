@@ -11,6 +11,7 @@ import numpy as np
 
 from corota.errors import Diagnostic, Location
 from corota.io.deck import numerals
+from corota.io.deck.card import Card, Row, key
 from corota.io.deck.drafts import (
     AttachedDraft,
     BehaviorDraft,
@@ -29,7 +30,7 @@ from corota.io.deck.drafts import (
     StepDraft,
     TieDraft,
 )
-from corota.io.deck.lexer import Card, Lexer, Row, key
+from corota.io.deck.lexer import Lexer
 
 if TYPE_CHECKING:
     import os
@@ -201,10 +202,6 @@ class Deck:
         if found not in self.diagnostics:
             self.diagnostics.append(found)
 
-    def row_error(self, card: Card, row: Row, index: int, message: str, hint: str = "") -> None:
-        """Record an error at a field of a data line."""
-        self.error(card, row.at(index), message, text=row.text, hint=hint)
-
     def turned(self, target: str) -> str | None:
         """Reference node whose rotation a rotation node is; ``target`` is it, or a set of it."""
         found = self.scope.nsets.get(key(target))
@@ -218,120 +215,14 @@ class Deck:
         if text not in self.notes:
             self.notes.append(text)
 
-    def real(
-        self, card: Card, row: Row, index: int, what: str, default: float | None = None
-    ) -> float | None:
-        """Value of a field; an empty one is the default; ``None`` after an error."""
-        return self._field(card, row, index, what, default, numerals.real)
-
-    def integer(
-        self, card: Card, row: Row, index: int, what: str, default: int | None = None
-    ) -> int | None:
-        """Value of a whole-number field; as :meth:`real`."""
-        return self._field(card, row, index, what, default, numerals.integer)
-
-    def node(self, card: Card, row: Row, index: int, what: str) -> int | None:
+    def node(self, row: Row, index: int, what: str) -> int | None:
         """Number of a node; of ``INSTANCE.12`` a negative one, see ``instance_nodes``."""
         text = row.get(index)
         instance, dot, label = text.rpartition(".")
         if not dot or key(instance) not in self.instances or not numerals.is_label(label):
-            return self.integer(card, row, index, what)
+            return row.integer(index, what)
         self.instance_nodes.append(text)
         return -len(self.instance_nodes)
-
-    def _field(
-        self,
-        card: Card,
-        row: Row,
-        index: int,
-        what: str,
-        default: Number | None,
-        read: Callable[[str], Number],
-    ) -> Number | None:
-        text = row.get(index)
-        if not text and default is not None:
-            return default
-        if not text:
-            self.row_error(card, row, index, f"{what} is missing")
-            return None
-        try:
-            return read(text)
-        except ValueError as error:
-            self.row_error(card, row, index, f"{what}: {error}")
-            return None
-
-    def parameter_number(self, card: Card, name: str, default: float, least: float) -> float:
-        """Value of a numeric parameter, at least ``least``."""
-        return self._parameter(card, name, default, least, numerals.real)
-
-    def parameter_integer(self, card: Card, name: str, default: int, least: int) -> int:
-        """Value of a whole-number parameter, at least ``least``."""
-        return self._parameter(card, name, default, least, numerals.integer)
-
-    def _parameter(
-        self, card: Card, name: str, default: Number, least: Number, read: Callable[[str], Number]
-    ) -> Number:
-        if not card.has(name):
-            return default
-        try:
-            value = read(card.value(name))
-            if value < least:
-                raise ValueError(f"{value:g} is less than {least:g}")
-        except ValueError as error:
-            self.error(card, card.at(name), f"{card.parameters[name].name}: {error}")
-            return default
-        return value
-
-    def choice(self, card: Card, name: str, choices: Iterable[str], default: str) -> str:
-        """Value of a parameter out of a list (compared without case and blanks).
-
-        Unique abbreviations of at least three letters are accepted, as in Abaqus.
-        """
-        if not card.has(name):
-            return default
-        value, allowed = key(card.value(name)), list(choices)
-        if value in allowed:
-            return value
-        begun = [word for word in allowed if len(value) > 2 and word.startswith(value)]
-        if len(begun) == 1:
-            return begun[0]
-        self.error(
-            card,
-            card.at(name),
-            f"{card.parameters[name].name}={card.value(name)} is not known; "
-            f"expected {', '.join(allowed)}",
-            hint=nearest(value, allowed),
-        )
-        return default
-
-    def required(self, card: Card, name: str, shown: str = "") -> str:
-        """Value of a parameter that must be there; empty after an error."""
-        value = card.value(name)
-        if not value:
-            self.error(card, card.where, f"{shown or name}= is missing")
-        return value
-
-    def no_rows(self, card: Card) -> None:
-        """Refuse data lines under a card that takes none."""
-        for row in card.rows():
-            self.row_error(card, row, 0, "no data line is expected here")
-            return
-
-    def extra_fields(self, card: Card, row: Row, most: int) -> None:
-        """Refuse non-empty fields after the last one that the card takes."""
-        for index in range(most, len(row)):
-            if row.fields[index]:
-                self.row_error(card, row, index, f"too many fields: at most {most} are expected")
-                return
-
-
-def nearest(word: str, words: Iterable[str], cutoff: float = 0.7) -> str:
-    """Question that names the nearest word, or an empty text."""
-    from difflib import get_close_matches
-
-    candidates = {key(w): w for w in words}
-    found = get_close_matches(key(word)[:80], list(candidates), 1, cutoff)
-    return f"did you mean {candidates[found[0]]}?" if found else ""
 
 
 def int_array(values: Iterable[int]) -> Ints:

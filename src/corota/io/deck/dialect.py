@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from corota.io.deck.lexer import Card, key
+from corota.io.deck.card import Card, key
 
 #: Cards that Abaqus has and CalculiX has not.
 OF_ABAQUS = frozenset(

@@ -7,11 +7,15 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from corota.errors import Location
-from corota.io.deck.lexer import Card, Row, key
+from corota.io.deck.card import Card, Row, key
 from corota.model.friction import Friction, largest
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from corota.arrays import Floats, Ints
     from corota.model.loads import LoadKind
     from corota.model.materials import Elastic, Expansion
@@ -21,6 +25,10 @@ if TYPE_CHECKING:
 
     #: Numbers of steps.
     Numbers = tuple[int, ...]
+
+
+#: Degrees of freedom of decks in the plane, and their index here.
+PLANAR = {1: 0, 2: 1, 6: 2}
 
 
 @dataclass(eq=False, repr=False)
@@ -216,16 +224,24 @@ class Draft:
     """
 
     kind: str
-    card: Card
     row: Row
     target: str
     value: tuple[float, ...]
     index: int = -1
-    amplitude: str = ""
     silent: bool = False
     #: Of a support: how often its value is integrated over time, and whether it stays where it is.
     order: int = 0
     keep: bool = False
+
+    @property
+    def card(self) -> Card:
+        """Card of the line."""
+        return self.row.card
+
+    @property
+    def amplitude(self) -> str:
+        """Name of its amplitude, empty without one."""
+        return "" if self.kind == "nothing" else self.card.value("AMPLITUDE")
 
 
 @dataclass(eq=False, repr=False)
@@ -300,6 +316,14 @@ class Scope:
     #: Orientations by element: card, distribution, and an angle more [rad].
     axes_by_element: dict[str, tuple[Card, str, float]] = field(default_factory=dict)
 
+    def add_node(self, point: Floats, where: Location, scopes: Iterable[Scope] = ()) -> int:
+        """Add a node under the first number that this scope and others leave free."""
+        blocks = [block for scope in scopes or (self,) for block in scope.nodes]
+        label = 1 + max(int(b.labels.max(initial=0)) for b in blocks)
+        labels, lines = np.array([[label], [where.line]], np.int64)
+        self.nodes.append(NodeBlock(labels, point, where.file, lines))
+        return label
+
     def joined(self, own: Scope) -> Scope:
         """The data of a part with those that one of its instances adds."""
         return Scope(
@@ -369,15 +393,15 @@ class ConnectorDraft:
 
 @dataclass(eq=False, repr=False)
 class BehaviorDraft:
-    """One ``*CONNECTOR BEHAVIOR``: cards and lines by component (1, 2, 6).
+    """One ``*CONNECTOR BEHAVIOR``: lines of springs, cards of dampers by component (1, 2, 6).
 
     ``rigid`` are the locked components.
     """
 
     name: str
     card: Card
-    elastic: dict[int, tuple[Card, list[Row]]] = field(default_factory=dict)
-    damped: dict[int, tuple[Card, list[Row]]] = field(default_factory=dict)
+    elastic: dict[int, list[Row]] = field(default_factory=dict)
+    damped: dict[int, Card] = field(default_factory=dict)
     rigid: set[int] = field(default_factory=set)
     stops: dict[int, tuple[float, float]] = field(default_factory=dict)
 
@@ -389,7 +413,6 @@ class NonstructuralDraft:
     ``units`` says what the value is per; a total is shared by mass, or ``by_volume``.
     """
 
-    card: Card
     row: Row
     elset: str
     value: float
@@ -401,7 +424,6 @@ class NonstructuralDraft:
 class ReleaseDraft:
     """A line of ``*RELEASE``: the end (0 or -1) of beams that carries no moment."""
 
-    card: Card
     row: Row
     scope: Scope
     end: int
@@ -470,7 +492,6 @@ class InteractionDraft:
 class PairDraft:
     """One line of ``*CONTACT PAIR`` or ``*TIE``: slave, master and options."""
 
-    card: Card
     row: Row
     slave: str
     master: str
@@ -510,11 +531,11 @@ class GeneralDraft:
 
     card: Card
     every: bool = False
-    pairs: list[tuple[Card, Row]] = field(default_factory=list)
-    included: list[tuple[Card, Row]] = field(default_factory=list)
-    excluded: list[tuple[Card, Row]] = field(default_factory=list)
-    properties: list[tuple[Card, Row]] = field(default_factory=list)
-    starts: list[tuple[Card, Row]] = field(default_factory=list)
+    pairs: list[Row] = field(default_factory=list)
+    included: list[Row] = field(default_factory=list)
+    excluded: list[Row] = field(default_factory=list)
+    properties: list[Row] = field(default_factory=list)
+    starts: list[Row] = field(default_factory=list)
     interaction: str = ""
     stabilize: int = 0
     where: Location | None = None

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from corota.io.deck import numerals
+from corota.io.deck.card import Card, Row, key
 from corota.io.deck.laws import LAWS
-from corota.io.deck.lexer import Card, Row, key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -47,7 +47,7 @@ def find_fields(cards: Iterable[Card]) -> dict[int, float | None]:
 
 def pick_rows(deck: Deck, card: Card) -> None:
     """Leave the data lines of a card at the field variables of the model, without these."""
-    n_fields, before = deck.parameter_integer(card, "DEPENDENCIES", 1, 0), deck.n_errors
+    n_fields, before = card.integer("DEPENDENCIES", 1, 0), deck.n_errors
     if not n_fields:
         return
     kind = key(card.value("TYPE") or card.value("HARDENING"))
@@ -61,23 +61,22 @@ def pick_rows(deck: Deck, card: Card) -> None:
     for number in range(1, n_fields + 1):
         value = deck.fields.get(number, 0.0)
         if value is None:
-            deck.error(
-                card,
-                card.at("DEPENDENCIES"),
+            card.error(
                 f"field variable {number} is not the same everywhere and at all times",
+                "DEPENDENCIES",
                 hint="constants may follow the temperature: give the variable by *TEMPERATURE",
             )
         current.append(value or 0.0)
     groups: dict[tuple[float, ...], list[Row]] = {}
     if used + 1 + n_fields > PER_ROW or (card.keyword == "PLASTIC" and kind == "COMBINED"):
         text = "constants that follow so many field variables are not part of this version"
-        deck.error(card, card.at("DEPENDENCIES"), text, hint="leave out variables that are zero")
+        card.error(text, "DEPENDENCIES", hint="leave out variables that are zero")
     for first in range(0, len(rows), n_rows):
         mine = rows[first : first + n_rows]
         last = mine[-1]
-        deck.extra_fields(card, last, used + 1 + n_fields)
+        last.at_most(used + 1 + n_fields)
         columns = range(used + 1, used + 1 + n_fields)
-        values = [deck.real(card, last, i, "the field variable", 0.0) for i in columns]
+        values = [last.real(i, "the field variable", 0.0) for i in columns]
         plain = replace(last, fields=last.fields[: used + 1], columns=last.columns[: used + 1])
         at = tuple(float(v or 0.0) for v in values)
         groups.setdefault(at, []).extend([*mine[:-1], plain])
@@ -86,16 +85,15 @@ def pick_rows(deck: Deck, card: Card) -> None:
     if deck.n_errors > before:
         card.picked = next(iter(groups.values()))
         return
-    card.picked = _at(deck, card, groups, tuple(current))
+    card.picked = _at(card, groups, tuple(current))
     if deck.n_errors == before:
-        deck.note(
-            f"{card.where}: {card.spelled}: the constants are those at the field variables "
+        card.note(
+            f"the constants are those at the field variables "
             f"{', '.join(f'{v:g}' for v in current)}, which the whole model has"
         )
 
 
 def _at(
-    deck: Deck,
     card: Card,
     groups: dict[tuple[float, ...], list[Row]],
     current: tuple[float, ...],
@@ -115,10 +113,9 @@ def _at(
         mixed = _mixed(groups[(low,)], groups[(high,)], share)
         if mixed:
             return mixed
-    deck.error(
-        card,
-        card.at("DEPENDENCIES"),
+    card.error(
         f"no line is at the field variables {', '.join(f'{v:g}' for v in current)} of the model",
+        "DEPENDENCIES",
         hint="give the constants there; *INITIAL CONDITIONS, TYPE=FIELD gives the variables",
     )
     return next(iter(groups.values()))

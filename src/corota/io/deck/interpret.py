@@ -3,10 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from corota.io.deck.deck import Deck, nearest
+from corota.errors import InputError
+from corota.io.deck.card import Card, Refused, key, nearest
+from corota.io.deck.deck import Deck
 from corota.io.deck.fields import pick_rows
 from corota.io.deck.keywords import KEYWORDS, SPELLED
-from corota.io.deck.lexer import Card, key
 from corota.io.deck.refused import (
     HEAT,
     IGNORED,
@@ -21,6 +22,7 @@ from corota.io.deck.refused import (
 
 def interpret(deck: Deck, card: Card) -> None:
     """Read one card into the deck."""
+    card.deck, card.scope = deck, deck.scope
     entry = KEYWORDS.get(card.keyword)
     if entry is None:
         _unknown(deck, card)
@@ -30,13 +32,12 @@ def interpret(deck: Deck, card: Card) -> None:
     refused = {
         name for keyword, name in (*REFUSED_PARAMETERS, *WITHOUT_EFFECT) if keyword == card.keyword
     }
-    card.scope = deck.scope
     _spell_out(card, known | ignored | refused)
     for name, parameter in card.parameters.items():
         if name in known or (card.keyword, name) in LABELS:
             continue
         if name in ignored or _same(parameter.value, WITHOUT_EFFECT.get((card.keyword, name))):
-            deck.note(f"{card.where}: {card.spelled}: {parameter.name} is ignored")
+            card.note(f"{parameter.name} is ignored")
             continue
         place = type(card.where)(card.where.file, card.where.line, parameter.column)
         reason = REFUSED_PARAMETERS.get((card.keyword, name))
@@ -49,16 +50,16 @@ def interpret(deck: Deck, card: Card) -> None:
             hint = nearest(name, known | ignored)
             deck.error(card, place, f"unknown parameter {parameter.name}", hint=hint)
     if entry.place == "model" and deck.step is not None:
-        deck.error(
-            card,
-            card.where,
-            f"{card.spelled} inside a step",
-            hint="model data stand before the first *STEP",
-        )
+        card.error(f"{card.spelled} inside a step", hint="model data stand before the first *STEP")
         return
     if "DEPENDENCIES" in known and card.has("DEPENDENCIES"):
         pick_rows(deck, card)
-    entry.function(deck, card)
+    try:
+        entry.function(deck, card)
+    except Refused:
+        return
+    except InputError as error:
+        card.error(error.message)
 
 
 def _same(given: str, value: str | None) -> bool:
@@ -89,7 +90,7 @@ def _unknown(deck: Deck, card: Card) -> None:
         return
     if card.keyword in UNSUPPORTED:
         _answered(deck, card, UNSUPPORTED[card.keyword])
-        deck.error(card, card.where, "the card is not supported", hint=UNSUPPORTED[card.keyword])
+        card.error("the card is not supported", hint=UNSUPPORTED[card.keyword])
         return
     # A card that is read comes before one that is refused.
     hint = nearest(card.keyword, [*KEYWORDS, "INCLUDE"]) or nearest(
@@ -99,7 +100,7 @@ def _unknown(deck: Deck, card: Card) -> None:
         text = f"unknown keyword {card.spelled} is ignored"
         deck.error(card, card.where, text, hint=hint, severity="warning")
     else:
-        deck.error(card, card.where, f"unknown keyword {card.spelled[:60]}", hint=_pretty(hint))
+        card.error(f"unknown keyword {card.spelled[:60]}", hint=_pretty(hint))
 
 
 def _answered(deck: Deck, card: Card, why: str) -> None:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from corota.io.deck.card import Card, key
 from corota.io.deck.laws import LAWS
-from corota.io.deck.lexer import Card, key
 from corota.lazy import lazy
 
 if TYPE_CHECKING:

@@ -6,13 +6,13 @@ from __future__ import annotations
 import os
 import re
 import stat
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from pathlib import Path
 
 import corota._core as _core
 from corota.errors import Diagnostic, FileError, InputError, Location
 from corota.io.deck import numerals
+from corota.io.deck.card import Card, Chunk, Parameter, Source, decode, key, split_at_commas
 from corota.io.deck.parameters import Parameters, Value
 
 #: Files inside files.
@@ -35,154 +35,6 @@ _DIALECT = re.compile(
 )
 #: How far into a deck these comments are read [bytes].
 HEAD = 65536
-_BLANK = re.compile(r'[\s"]+')
-
-
-@dataclass(frozen=True)
-class Source:
-    """Bytes of one file and the name shown in messages."""
-
-    name: str
-    data: bytes
-
-    def line(self, start: int) -> tuple[str, int]:
-        """Text of the line that starts at a byte, and the byte after it."""
-        end = self.data.find(b"\n", start)
-        stop = len(self.data) if end < 0 else end
-        text = decode(self.data[start:stop]).rstrip("\r")
-        return text, len(self.data) if end < 0 else end + 1
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """Consecutive data lines of one file: bytes ``start:stop``, first line number."""
-
-    source: Source
-    start: int
-    stop: int
-    line: int
-
-    def data(self) -> bytes:
-        """Bytes of the lines."""
-        return self.source.data[self.start : self.stop]
-
-
-@dataclass(slots=True, eq=False, repr=False)
-class Row:
-    """One data line as fields with their columns (from 1)."""
-
-    where: Location
-    text: str
-    fields: list[str]
-    columns: list[int]
-
-    def __len__(self) -> int:
-        return len(self.fields)
-
-    def at(self, index: int) -> Location:
-        """Place of a field, or the end of the line."""
-        end = len(self.text.rstrip()) + 1
-        column = self.columns[index] if index < len(self.columns) else end
-        return Location(self.where.file, self.where.line, column)
-
-    def get(self, index: int) -> str:
-        """Text of a field, empty if it is not there."""
-        return self.fields[index] if index < len(self.fields) else ""
-
-
-@dataclass(slots=True, eq=False, repr=False)
-class Parameter:
-    """One parameter of a keyword line; ``value`` is empty if none was given."""
-
-    name: str
-    value: str
-    column: int
-    value_column: int
-
-
-@dataclass(slots=True, eq=False, repr=False)
-class Card:
-    """One keyword line with its data lines.
-
-    Attributes
-    ----------
-    keyword : str
-        Upper case without blanks, without the star: ``SOLIDSECTION``.
-    spelled : str
-        As in the file: ``*Solid Section``.
-    parameters : dict of str to Parameter
-        By name, upper case without blanks.
-    scope : object
-        Part, instance or assembly in which it stands; set where cards are interpreted.
-    """
-
-    keyword: str
-    spelled: str
-    parameters: dict[str, Parameter]
-    where: Location
-    text: str
-    chunks: list[Chunk] = field(default_factory=list)
-    scope: object = None
-    #: Data lines that take the place of those in the file.
-    picked: list[Row] | None = None
-
-    def rows(self) -> Iterator[Row]:
-        """Iterate over the data lines, without comments and empty ones."""
-        if self.picked is not None:
-            yield from self.picked
-            return
-        for chunk in self.chunks:
-            start, number = chunk.start, chunk.line
-            while start < chunk.stop:
-                text, start = chunk.source.line(start)
-                stripped = text.strip()
-                if stripped and not stripped.startswith("**"):
-                    yield split_row(text, Location(chunk.source.name, number))
-                number += 1
-
-    def value(self, name: str) -> str:
-        """Value of a parameter, empty if it is absent."""
-        found = self.parameters.get(name)
-        return found.value if found else ""
-
-    def has(self, name: str) -> bool:
-        """Whether a parameter is given."""
-        return name in self.parameters
-
-    def at(self, name: str) -> Location:
-        """Place of a parameter's value, or of the card."""
-        found = self.parameters.get(name)
-        if found is None:
-            return self.where
-        column = found.value_column or found.column
-        return Location(self.where.file, self.where.line, column)
-
-
-def decode(data: bytes) -> str:
-    """Text of bytes: UTF-8, else Latin-1 (which takes every byte)."""
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError:
-        return data.decode("latin-1")
-
-
-def key(name: str) -> str:
-    """Form in which names are compared: upper case, no blanks, no quotes."""
-    return _BLANK.sub("", name).upper()
-
-
-def split_row(text: str, where: Location) -> Row:
-    """Cut a data line at its commas; one trailing comma adds no field."""
-    fields, columns, column = [], [], 1
-    for part in _split_keyword(text) if '"' in text else text.split(","):
-        body = part.strip()
-        fields.append(body)
-        columns.append(column + len(part) - len(part.lstrip()) if body else column)
-        column += len(part) + 1
-    if len(fields) > 1 and not fields[-1]:
-        fields.pop()
-        columns.pop()
-    return Row(where, text, fields, columns)
 
 
 class Lexer:
@@ -339,7 +191,7 @@ class Lexer:
     def _card(self, text: str, where: Location) -> Card:
         column = len(text) - len(text.lstrip()) + 1
         where = Location(where.file, where.line, column)
-        parts = _split_keyword(text)
+        parts = split_at_commas(text)
         spelled = parts[0].strip()
         parameters: dict[str, Parameter] = {}
         at = len(parts[0]) + 2
@@ -472,18 +324,6 @@ def _next_keyword(data: bytes, start: int) -> int:
         if end < 0:
             return len(data)
         start = end + 1
-
-
-def _split_keyword(text: str) -> list[str]:
-    """Cut a keyword line at commas outside quotes."""
-    parts, quoted, start = [], False, 0
-    for at, character in enumerate(text):
-        if character == '"':
-            quoted = not quoted
-        elif character == "," and not quoted:
-            parts.append(text[start:at])
-            start = at + 1
-    return [*parts, text[start:]]
 
 
 def _continues(first: str) -> bool:

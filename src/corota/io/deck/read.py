@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 from corota.errors import DeckError, Diagnostic, InputError
 from corota.io.deck.build.model import ModelBuilder
-from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.card import key, nearest
+from corota.io.deck.deck import Deck
 from corota.io.deck.dialect import find_dialect, is_of_calculix
 from corota.io.deck.elements import ELEMENTS, OWN
 from corota.io.deck.fields import find_fields
 from corota.io.deck.interpret import interpret
-from corota.io.deck.lexer import Lexer, key
+from corota.io.deck.lexer import Lexer
 from corota.io.deck.restart import card_that_reads, with_earlier_steps
 from corota.lazy import lazy
 from corota.model.units import Units
@@ -104,7 +105,7 @@ def _name_units(model: Model, lexer: Lexer) -> None:
 
 def _open_ends(deck: Deck) -> None:
     if deck.step is not None:
-        deck.error(deck.step.card, deck.step.card.where, "the step has no *END STEP")
+        deck.step.card.error("the step has no *END STEP")
     if deck.instance is not None:
         where = deck.instance.card.where
         deck.error(deck.instance.card, where, "the instance has no *END INSTANCE")

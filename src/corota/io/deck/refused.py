@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from corota.io.deck.card import key
 from corota.io.deck.laws import LAWS
-from corota.io.deck.lexer import key
 
 #: Cards without effect here; each is listed in ``Model.notes``.
 IGNORED: dict[str, str] = {

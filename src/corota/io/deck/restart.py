@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from corota.errors import FileError
-from corota.io.deck.lexer import Card, Lexer
+from corota.io.deck.card import Card
+from corota.io.deck.lexer import Lexer
 from corota.io.provenance import changed_file
 
 if TYPE_CHECKING:
@@ -41,25 +42,23 @@ def with_earlier_steps(
         If there is no such checkpoint, or the earlier deck is missing or changed.
     """
     for own in cards:
+        own.deck = deck
+    for own in cards:
         if own.keyword == "STEP":
             break
         if own.keyword not in ALLOWED:
-            deck.error(
-                own,
-                own.where,
+            own.error(
                 "a deck with *RESTART, READ takes its model from the earlier job",
                 hint="give steps, and the sets, surfaces and amplitudes that they need",
             )
             return cards, None
-    step = deck.parameter_integer(card, "STEP", 0, 1)
-    increment = deck.parameter_integer(card, "INC", 0, 0) if card.has("INC") else None
+    step = card.integer("STEP", 0, 1)
+    increment = card.integer("INC", 0, 0) if card.has("INC") else None
     if deck.n_errors:
         return cards, None
     job = lexer.path.parent / (card.value("JOB") or lexer.path.stem)
     if not lexer.allows(job):
-        deck.error(
-            card,
-            card.where,
+        card.error(
             f"JOB={card.value('JOB')} is outside the folder of the deck",
             hint="move the earlier job there, or allow it: --allow-include",
         )

@@ -13,7 +13,7 @@ import numpy as np
 from corota._core import parse_reals
 from corota.errors import InputError, Location, UnsupportedError
 from corota.io.deck import numerals
-from corota.io.deck.lexer import decode
+from corota.io.deck.card import decode
 from corota.mesh.kinds import KINDS, N_NODES
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.io.deck.lexer import key
+from corota.io.deck.card import key
 from corota.model.integrated import IntegratedAmplitude, VibrationAmplitude
 from corota.model.loads import Fixed
 from corota.model.steps import Dynamic, ModalDynamic, SteadyState, Visco
@@ -101,20 +101,20 @@ def base_supports(deck: Deck, model: Model, step: StepDraft, supports: list[Fixe
         )
         if table is None:
             text = f"no amplitude named {draft.amplitude!r}"
-            deck.error(card, card.at("AMPLITUDE"), text)
+            card.error(text, "AMPLITUDE")
             continue
         held = [
             s.nodes for s in every if s.dof == draft.index and s.value == 0.0 and not s.amplitude
         ]
         if not held:
             text = f"no support holds dof {draft.index + 1}, which the base moves"
-            deck.error(card, card.at("DOF"), text, hint="fix the nodes at the base by *BOUNDARY")
+            card.error(text, "DOF", hint="fix the nodes at the base by *BOUNDARY")
             continue
         name: str | None = table.name
         if draft.order and step.make is SteadyState:
             if draft.order == 1:
                 text = "in a harmonic step give the displacement or the acceleration"
-                deck.error(card, card.at("TYPE"), text)
+                card.error(text, "TYPE")
                 continue
             name = f"vibration {table.name}"
             model.amplitudes[name] = VibrationAmplitude(

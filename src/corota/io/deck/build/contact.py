@@ -12,9 +12,8 @@ from corota.io.deck import numerals
 from corota.io.deck.build.general_contact import add_general
 from corota.io.deck.build.mesh import View, placed, views_in
 from corota.io.deck.build.ties import single_node
+from corota.io.deck.card import Card, key, nearest
 from corota.io.deck.cards.contact import interaction_of
-from corota.io.deck.deck import nearest
-from corota.io.deck.lexer import Card, key
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
 from corota.model.steps import Buckle, Frequency, Visco
 
@@ -36,7 +35,7 @@ def build_contacts(targets: Targets) -> None:
         try:
             builder.add(pair)
         except InputError as error:
-            deck.error(pair.card, pair.row.where, error.message, text=pair.row.text)
+            deck.error(pair.row.card, pair.row.where, error.message, text=pair.row.text)
     builder.unused()
 
 
@@ -59,9 +58,7 @@ class _Builder:
         if slave is None or master is None or (interaction is None and not pair.tied):
             return
         if isinstance(slave, RigidCurve):
-            self.deck.row_error(
-                pair.card,
-                pair.row,
+            pair.row.error(
                 0,
                 f"{pair.slave} is a rigid profile and cannot be the slave",
                 "name the deformable surface first, the rigid one second",
@@ -71,12 +68,8 @@ class _Builder:
         tied = pair.tied or (interaction is not None and interaction.law == "TIED")
         if tied:
             if isinstance(master, RigidCurve):
-                self.deck.row_error(
-                    pair.card,
-                    pair.row,
-                    1,
-                    "nothing can be tied to a rigid profile",
-                    "use *RIGID BODY, NSET=",
+                pair.row.error(
+                    1, "nothing can be tied to a rigid profile", "use *RIGID BODY, NSET="
                 )
                 return
             self.model.ties.append(Tie(slave, master, pair.adjust, name, pair.row.where))
@@ -120,13 +113,12 @@ class _Builder:
         """Nodes of ``ADJUST=set``."""
         if not pair.adjust_set:
             return None
-        view = self._view(pair.card)
+        view = self._view(pair.row.card)
         name = self.sets.mesh_name(self.model.mesh.node_sets, view, pair.adjust_set)
         if not name:
-            self.deck.error(
-                pair.card,
-                pair.card.at("ADJUST"),
+            pair.row.card.error(
                 f"no node set named {numerals.shown(pair.adjust_set)}",
+                "ADJUST",
                 hint=nearest(pair.adjust_set, self.model.mesh.node_sets)
                 or "or give the distance up to which gaps are closed without strain",
             )
@@ -135,7 +127,7 @@ class _Builder:
     def _law(self, draft: InteractionDraft) -> PressureLaw | None:
         card, draft.damping = draft.damping, None  # said once
         if card is not None and all(step.make in AT_REST for step in self.deck.steps):
-            self.deck.note(f"{card.where}: {card.spelled}: contact is damped in dynamic steps only")
+            card.note("contact is damped in dynamic steps only")
         elif (
             card is not None and draft.law == "HARD" and "FRACTION" in key(card.value("DEFINITION"))
         ):
@@ -145,7 +137,7 @@ class _Builder:
         elif card is not None:
             text = "damping of contact is not part of this version in steps with motion"
             hint = "damp the bodies by *DAMPING, or leave the card out"
-            self.deck.error(card, card.where, text, hint=hint)
+            card.error(text, hint=hint)
         if draft.law in ("HARD", "TIED") or not draft.pressure:
             return None
         kind = cast("Literal['linear', 'tabular', 'exponential']", draft.law.lower())
@@ -159,18 +151,12 @@ class _Builder:
     def _surface(self, pair: PairDraft, index: int) -> str | Ints | RigidCurve | None:
         """A surface of a pair: name of edges, edges, or a rigid curve; ``None`` after an error."""
         name = (pair.slave, pair.master)[index]
-        full = self._full(pair.card, name)
+        full = self._full(pair.row.card, name)
         found = self.sets.surfaces.get(full)
         index = min(index, len(pair.row) - 1)
         if found is None:
             known = [view.prefix + s.name for view, s in self.sets.surfaces.values()]
-            self.deck.row_error(
-                pair.card,
-                pair.row,
-                index,
-                f"no surface named {numerals.shown(name)}",
-                nearest(name, known),
-            )
+            pair.row.error(index, f"no surface named {numerals.shown(name)}", nearest(name, known))
             return None
         view, surface = found
         if key(surface.card.value("TYPE")) == "SEGMENTS":
@@ -191,9 +177,7 @@ class _Builder:
             edges, what = self.model.mesh.edge_sets[full], "it has no edges"
         if not len(edges):
             if not self.deck.n_errors:
-                self.deck.row_error(
-                    pair.card,
-                    pair.row,
+                pair.row.error(
                     index,
                     f"surface {name} cannot be used for contact: {what}",
                     "contact acts on edges: give the surface by elements and faces",
@@ -256,20 +240,14 @@ class _Builder:
             ways.append(ends if row.face == "SPOS" else ends[:, ::-1])
         chain = _chain(np.concatenate(ways))
         if chain is None:
-            self.deck.error(
-                surface.card,
-                surface.card.where,
+            surface.card.error(
                 f"the sides of {surface.name} do not follow each other in one line",
                 hint="give each chain of sides its own surface, all in one direction",
             )
             return None
         reference = self._body_of(set(lines))
         if reference is None:
-            self.deck.error(
-                surface.card,
-                surface.card.where,
-                f"the sides of {surface.name} belong to no *RIGID BODY, ELSET=",
-            )
+            surface.card.error(f"the sides of {surface.name} belong to no *RIGID BODY, ELSET=")
             return None
         points = self.model.mesh.points[chain]
         rows = np.zeros((len(chain) - 1, 7))
@@ -297,15 +275,14 @@ class _Builder:
             if name not in self.sets.surfaces:
                 shown = card.value("ANALYTICALSURFACE")
                 names = [s.name for _, s in self.sets.surfaces.values()]
-                self.deck.error(
-                    card,
-                    card.at("ANALYTICALSURFACE"),
+                card.error(
                     f"no surface named {numerals.shown(shown)}",
+                    "ANALYTICALSURFACE",
                     hint=nearest(shown, names),
                 )
             elif key(self.sets.surfaces[name][1].card.value("TYPE")) != "SEGMENTS":
                 text = "the surface is not a rigid profile (TYPE=SEGMENTS); use NSET= or ELSET="
-                self.deck.error(card, card.at("ANALYTICALSURFACE"), text)
+                card.error(text, "ANALYTICALSURFACE")
         named = {key(p.interaction) for p in self.deck.pairs}
         for name, draft in self.deck.interactions.items():
             if name not in named:

@@ -12,10 +12,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from corota.io.deck import numerals
+from corota.io.deck.card import Row, key, nearest
 from corota.io.deck.cards.contact import begins_in
-from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import GeneralDraft, InteractionDraft, PairDraft, StartDraft, Surface
-from corota.io.deck.lexer import Card, Row, key
 
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
@@ -48,7 +48,7 @@ def add_general(deck: Deck, model: Model, sets: Sets) -> None:
         return
     card = draft.card
     if not draft.every and not draft.pairs and not draft.included:
-        deck.error(card, card.where, "general contact has no *CONTACT INCLUSIONS below it")
+        card.error("general contact has no *CONTACT INCLUSIONS below it")
         return
     default = draft.interaction
     every = draft.every or bool(draft.included)
@@ -56,7 +56,7 @@ def add_general(deck: Deck, model: Model, sets: Sets) -> None:
         default = DEFAULT
         deck.interactions.setdefault(key(DEFAULT), InteractionDraft(DEFAULT, card))
         deck.note(f"{card.where}: general contact without an interaction: hard, no friction")
-    default = default or draft.properties[0][1].get(2)
+    default = default or draft.properties[0].get(2)
     _General(deck, model, sets, draft, default).add()
 
 
@@ -77,14 +77,14 @@ class _General:
         self, deck: Deck, model: Model, sets: Sets, draft: GeneralDraft, default: str
     ) -> None:
         self.deck, self.model, self.sets, self.draft = deck, model, sets, draft
-        first = [row.get(2) for _, row in draft.starts if not row.get(0) and not row.get(1)]
+        first = [row.get(2) for row in draft.starts if not row.get(0) and not row.get(1)]
         self.rule = _Rule(default, first[-1] if first else "")
-        self.row = Row(draft.where or draft.card.where, draft.card.text, [""], [1])
+        self.row = Row(draft.card, draft.where or draft.card.where, draft.card.text, [""], [1])
 
     def add(self) -> None:
         """Add all pairs."""
         draft = self.draft
-        lines = [*draft.properties, *(x for x in draft.starts if x[1].get(0) or x[1].get(1))]
+        lines = [*draft.properties, *(x for x in draft.starts if x.get(0) or x.get(1))]
         if not draft.every and not draft.included:
             self._named(lines)
             return
@@ -101,7 +101,7 @@ class _General:
         plain = start is None or start.start == "adjust"
         if draft.every and not lines and not draft.excluded and plain:
             for master in (EXTERIOR, *rigid):
-                self._pair(draft.card, self.row, EXTERIOR, master, self.rule)
+                self._pair(self.row, EXTERIOR, master, self.rule)
             what = "all outer edges, each body with itself included"
         else:
             self._groups(lines, rigid)
@@ -111,51 +111,47 @@ class _General:
             + (f", and {', '.join(rigid)}" if rigid else "")
             + "; mortar, finite sliding"
         )
-        for of, row in draft.pairs:
-            self._pair(of, row, row.get(0), row.get(1) or row.get(0), self.rule)
+        for row in draft.pairs:
+            self._pair(row, row.get(0), row.get(1) or row.get(0), self.rule)
 
-    def _named(self, lines: list[tuple[Card, Row]]) -> None:
+    def _named(self, lines: list[Row]) -> None:
         """Pairs that the inclusions name, with what other lines say of the same two surfaces."""
 
         def names(row: Row) -> frozenset[str]:
             return frozenset((key(row.get(0)), key(row.get(1) or row.get(0))))
 
-        rules = {names(row): self.rule for _, row in self.draft.pairs}
-        gone = {names(row) for _, row in self.draft.excluded}
-        for card, row in [*self.draft.excluded, *lines]:
+        rules = {names(row): self.rule for row in self.draft.pairs}
+        gone = {names(row) for row in self.draft.excluded}
+        for row in [*self.draft.excluded, *lines]:
             if names(row) not in rules:
-                shown = "; ".join(f"{r.get(0)}, {r.get(1)}" for _, r in self.draft.pairs)
-                self.deck.row_error(
-                    card,
-                    row,
+                shown = "; ".join(f"{r.get(0)}, {r.get(1)}" for r in self.draft.pairs)
+                row.error(
                     0,
                     "no inclusion of general contact has these two surfaces",
                     f"name the surfaces of an inclusion: {shown}",
                 )
                 return
-        for card, row in lines:
-            rules[names(row)] = _changed(rules[names(row)], card, row)
-        for of, row in self.draft.pairs:
+        for row in lines:
+            rules[names(row)] = _changed(rules[names(row)], row)
+        for row in self.draft.pairs:
             if names(row) not in gone:
-                self._pair(of, row, row.get(0), row.get(1) or row.get(0), rules[names(row)])
+                self._pair(row, row.get(0), row.get(1) or row.get(0), rules[names(row)])
 
-    def _groups(self, lines: list[tuple[Card, Row]], rigid: list[str]) -> None:
+    def _groups(self, lines: list[Row], rigid: list[str]) -> None:
         """Pairs of groups of edges: those of a body that the same surfaces contain."""
         mesh, draft = self.model.mesh, self.draft
         edges = mesh.edge_sets[EXTERIOR]
         place = {tuple(e): i for i, e in enumerate(edges.tolist())}
         columns: dict[str, int] = {}
         inside: list[Ints] = []
-        for card, row in [*draft.included, *draft.excluded, *lines]:
+        for row in [*draft.included, *draft.excluded, *lines]:
             for index in (0, 1):
                 name = row.get(index)
                 if not name or key(name) in columns or key(name) in map(key, rigid):
                     continue
                 full = self.sets.mesh_name(mesh.edge_sets, self.sets.views[0], name)
                 if not full:
-                    self.deck.row_error(
-                        card,
-                        row,
+                    row.error(
                         index,
                         f"no surface of element edges named {numerals.shown(name)}",
                         nearest(name, [*mesh.edge_sets, *rigid]),
@@ -191,14 +187,14 @@ class _General:
         if draft.every:
             every = ((a, b) for a in range(n) for b in range(a, total))
             rules = dict.fromkeys(every, self.rule)
-        for _, row in draft.included:
+        for row in draft.included:
             rules.update(dict.fromkeys(pairs(row), self.rule))
-        for _, row in draft.excluded:
+        for row in draft.excluded:
             for pair in pairs(row):
                 rules.pop(pair, None)
-        for card, row in lines:
+        for row in lines:
             for pair in pairs(row) & rules.keys():
-                rules[pair] = _changed(rules[pair], card, row)
+                rules[pair] = _changed(rules[pair], row)
         sets = [edges[group.ravel() == g] for g in range(n)]
         self._surfaces(rules, sets, bodies, rigid)
 
@@ -229,7 +225,7 @@ class _General:
             if slaves != masters and masters[0] < n and size(masters) < size(slaves):
                 slaves, masters = masters, slaves
             master = surface(masters) if masters[0] < n else rigid[masters[0] - n]
-            self._pair(self.draft.card, self.row, surface(slaves), master, rule)
+            self._pair(self.row, surface(slaves), master, rule)
 
         of = {
             body: [g for g, b in enumerate(bodies) if b == body] for body in dict.fromkeys(bodies)
@@ -240,9 +236,7 @@ class _General:
             inner = {p: rules.get(p) for p in _pairs(groups)}
             met = {rule for p, rule in inner.items() if self._face(sets[p[0]], sets[p[1]])}
             if len(met - {None}) > 1 or (None in met and len(met) > 1 and self.draft.every):
-                self.deck.row_error(
-                    self.draft.card,
-                    self.row,
+                self.row.error(
                     0,
                     "edges of one body that face each other have different rules of contact",
                     "name them by *CONTACT PAIR, or treat all edges of the body alike",
@@ -291,9 +285,9 @@ class _General:
         label = connected_components(graph, directed=False)[1]
         return np.array([label[nodes[0]] for nodes in mesh.edge_nodes(edges)], np.int64)
 
-    def _pair(self, card: Card, row: Row, slave: str, master: str, rule: _Rule) -> None:
-        pair = PairDraft(card, row, slave, master, interaction=rule.interaction)
-        start = self.deck.starts.get(key(rule.start)) or StartDraft("", card)
+    def _pair(self, row: Row, slave: str, master: str, rule: _Rule) -> None:
+        pair = PairDraft(row, slave, master, interaction=rule.interaction)
+        start = self.deck.starts.get(key(rule.start)) or StartDraft("", row.card)
         pair.start, pair.adjust, pair.clearance = start.start, start.adjust, start.clearance
         pair.stabilize = self.draft.stabilize
         begins_in(pair, self.draft.step)
@@ -304,8 +298,8 @@ def _pairs(groups: list[int]) -> list[tuple[int, int]]:
     return [(a, b) for i, a in enumerate(groups) for b in groups[i:]]
 
 
-def _changed(rule: _Rule, card: Card, row: Row) -> _Rule:
+def _changed(rule: _Rule, row: Row) -> _Rule:
     """Rule of two surfaces after a line that names them."""
-    if "PROPERTY" in card.keyword:
+    if "PROPERTY" in row.card.keyword:
         return replace(rule, interaction=row.get(2))
     return replace(rule, start=row.get(2))

@@ -30,7 +30,7 @@ def scale_masses(targets: Targets, drafts: list[MassScalingDraft]) -> None:
     try:
         targets.mass_factor = _factors(targets, drafts)
     except InputError as error:
-        targets.deck.error(card, card.where, error.message)
+        card.error(error.message)
 
 
 def _factors(targets: Targets, drafts: list[MassScalingDraft]) -> Floats:
@@ -42,9 +42,7 @@ def _factors(targets: Targets, drafts: list[MassScalingDraft]) -> Floats:
     said = {_words(d) for d in kept}
     for draft in drafts:
         if early or _words(draft) not in said:
-            deck.error(
-                draft.card,
-                draft.card.where,
+            draft.card.error(
                 "masses are the same in all steps, but this one scales others than the first",
                 hint="scale them in the first step that has inertia; later steps keep them",
             )

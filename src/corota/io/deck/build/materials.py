@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
+from corota.io.deck.card import key
 from corota.io.deck.cards.hyperelastic import build_mullins, fitted
 from corota.io.deck.laws import LAWS
-from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.model.material_table import MaterialTable
 from corota.model.plasticity import Mises
@@ -42,7 +42,7 @@ def build_material(deck: Deck, draft: MaterialDraft, temperature: float | None) 
     one.
     """
     if not draft.law:
-        deck.error(draft.card, draft.card.where, f"material {draft.name} has no *ELASTIC below it")
+        draft.card.error(f"material {draft.name} has no *ELASTIC below it")
         return None
     if draft.law_card is None:
         return None

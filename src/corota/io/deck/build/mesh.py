@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import Diagnostic, Location
+from corota.io.deck.card import key
 from corota.io.deck.elements import ELEMENTS, LINE_ELEMENTS, LINES, collapsed
-from corota.io.deck.lexer import key
 from corota.mesh.data import Cells, Mesh
 from corota.mesh.kinds import KINDS
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, GOOD, classify

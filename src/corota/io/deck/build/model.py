@@ -13,8 +13,8 @@ from corota.io.deck.build.materials import share_damping
 from corota.io.deck.build.mesh import MeshBuilder, views_in
 from corota.io.deck.build.sections import SectionBuilder
 from corota.io.deck.build.targets import Targets
-from corota.io.deck.deck import Deck, Stage, nearest
-from corota.io.deck.lexer import key
+from corota.io.deck.card import key, nearest
+from corota.io.deck.deck import Deck, Stage
 from corota.lazy import lazy
 from corota.model.element_changes import ElementChange
 from corota.model.model import Model
@@ -120,7 +120,7 @@ class ModelBuilder:
         if what:
             card = next(s.card for s in self.deck.steps if s.perturbs)
             text = f"load cases (PERTURBATION) of a model with {what} are not part of this version"
-            self.deck.error(card, card.at("PERTURBATION"), text, hint="give each a deck of its own")
+            card.error(text, "PERTURBATION", hint="give each a deck of its own")
 
     def _unused(self) -> None:
         deck = self.deck
@@ -183,7 +183,7 @@ class ModelBuilder:
                 **options,
             )
         except InputError as error:
-            deck.error(draft.procedure, draft.procedure.where, error.message)
+            draft.procedure.error(error.message)
             return None
 
     def _change(self, draft: Draft) -> ElementChange | None:
@@ -193,7 +193,7 @@ class ModelBuilder:
             return None
         if len(found.attached) or not len(found.cells):
             text = f"{draft.target} holds no solid elements, trusses, beams or springs"
-            self.deck.row_error(draft.card, draft.row, 0, text)
+            draft.row.error(0, text)
             return None
         where = draft.row.where
         return ElementChange(found.cells, draft.index > 0, draft.index < 2, where)
@@ -217,10 +217,9 @@ class ModelBuilder:
         held = {(int(n), s.dof) for s in before for n in self.mesh.node_indices(s.nodes)}
         if dofs(second) | held != dofs(draft.supports) | held:
             card = second[0].card
-            self.deck.error(
-                card,
-                card.at("LOADCASE"),
+            card.error(
                 "the modes have other supports (LOAD CASE=2) than the perturbation (LOAD CASE=1)",
+                "LOADCASE",
                 hint="buckle the whole structure instead of a half with antisymmetric modes",
             )
 
@@ -230,20 +229,14 @@ class ModelBuilder:
             # Abaqus's words for the load cases of CalculiX.
             part = "IMAGINARY" if item.card.has("IMAGINARY") else "REAL"
             if draft.make is not SteadyState:
-                self.deck.error(
-                    item.card, item.card.at(part), f"{part} belongs to *STEADY STATE DYNAMICS"
-                )
+                item.card.error(f"{part} belongs to *STEADY STATE DYNAMICS", part)
             return part == "IMAGINARY" and draft.make is SteadyState
         case = item.card.value("LOADCASE") or "1"
         if case not in ("1", "2"):
-            self.deck.error(
-                item.card, item.card.at("LOADCASE"), f"LOAD CASE must be 1 or 2, not {case}"
-            )
+            item.card.error(f"LOAD CASE must be 1 or 2, not {case}", "LOADCASE")
         elif case == "2" and draft.make is not SteadyState:
-            self.deck.error(
-                item.card,
-                item.card.at("LOADCASE"),
-                "LOAD CASE=2 (out of phase) belongs to *STEADY STATE DYNAMICS",
+            item.card.error(
+                "LOAD CASE=2 (out of phase) belongs to *STEADY STATE DYNAMICS", "LOADCASE"
             )
         return case == "2" and draft.make is SteadyState
 

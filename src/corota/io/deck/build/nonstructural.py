@@ -30,7 +30,7 @@ def add_nonstructural(targets: Targets, drafts: list[NonstructuralDraft]) -> Non
     """Give the cells of each ``*NONSTRUCTURAL MASS`` sections with more density."""
     deck = targets.deck
     for draft in drafts:
-        card = draft.card
+        card = draft.row.card
         cells: set[int] = set()
         for view in views_in(targets.meshes.views, deck, card.scope):
             found = targets.sets.elements(view, draft.elset, card.at("ELSET"), card)

@@ -18,7 +18,8 @@ import numpy as np
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import views_in
 from corota.io.deck.build.ties import single_node
-from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.card import nearest
+from corota.io.deck.deck import Deck
 from corota.mesh.kinds import EDGES
 from corota.model.constraints import Equation, LocalAxes
 from corota.model.loads import Fixed, InitialTemperature, InitialVelocity, Temperature
@@ -56,10 +57,9 @@ class PretensionBuilder:
             for view in views_in(self.sets.views, self.deck, draft.card.scope):
                 name = self.sets.mesh_name(self.model.mesh.edge_sets, view, draft.surface)
                 if not name:
-                    self.deck.error(
-                        draft.card,
-                        draft.card.at("SURFACE"),
+                    draft.card.error(
                         f"no surface named {numerals.shown(draft.surface)}",
+                        "SURFACE",
                         hint=nearest(draft.surface, self.model.mesh.edge_sets),
                     )
                     continue
@@ -70,10 +70,9 @@ class PretensionBuilder:
         nodes = np.asarray(mesh.edge_set_nodes(edges), np.int64)
         near = _near_cells(mesh, edges, nodes)
         if near is None or not len(nodes):
-            self.deck.error(
-                draft.card,
-                draft.card.at("SURFACE"),
+            draft.card.error(
                 f"the surface {draft.surface} does not cut the body in two",
+                "SURFACE",
                 hint="name the faces of the elements on one side, from one outer edge to the other",
             )
             return

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, cast
@@ -15,8 +16,8 @@ from corota.errors import InputError
 from corota.io.deck.build.materials import build_material
 from corota.io.deck.build.mesh import View, views_in
 from corota.io.deck.build.temperatures import constant_temperature, drop_temperatures
+from corota.io.deck.card import Refused, key, nearest
 from corota.io.deck.cards.material import HYBRID_RATIO
-from corota.io.deck.deck import nearest
 from corota.io.deck.elements import (
     ASK,
     DRILLING,
@@ -26,7 +27,6 @@ from corota.io.deck.elements import (
     OWN,
     WRITTEN_BY_MESHIO,
 )
-from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.mesh.parts import nodes_of_cells
 from corota.model import axisymmetry
@@ -111,35 +111,23 @@ class SectionBuilder:
             found = self.sets.elements(view, draft.elset, card.at("ELSET"), card)
             if found is None:
                 continue
-            if len(found.lines) and not len(found.cells):
-                self.deck.error(
-                    card,
-                    card.at("ELSET"),
-                    f"{draft.elset} holds line elements of curves only",
-                    hint="for trusses, put the set and the section beside the elements",
-                )
-                continue
             taken = found.cells[owner[found.cells] >= 0]
-            if len(taken):
+            if len(found.lines) and not len(found.cells):
+                text = f"{draft.elset} holds line elements of curves only"
+                hint = "for trusses, put the set and the section beside the elements"
+                card.error(text, "ELSET", hint)
+            elif len(taken):
                 first = drafts[int(owner[taken[0]])][1].card.where
                 label = self.mesh.cell_labels[taken[0]]
-                self.deck.error(
-                    card, card.where, f"element {label} already has a section ({first})"
-                )
-                continue
-            owner[found.cells] = number
-            if draft.material and key(draft.material) not in materials:
-                names = [m.name for m in self.deck.materials.values()]
-                self.deck.error(
-                    card,
-                    card.at("MATERIAL"),
-                    f"no material named {draft.material!r}",
-                    hint=nearest(draft.material, names),
-                )
-                continue
-            material = materials[key(draft.material)]
-            if material is not None:
-                self._section(view, draft, found.cells, material)
+                card.error(f"element {label} already has a section ({first})")
+            else:
+                owner[found.cells] = number
+                if draft.material and key(draft.material) not in materials:
+                    hint = nearest(draft.material, [m.name for m in self.deck.materials.values()])
+                    card.error(f"no material named {draft.material!r}", "MATERIAL", hint)
+                elif material := materials[key(draft.material)]:
+                    with suppress(Refused):
+                        self._section(view, draft, found.cells, material)
         if any(view.scope.lines for view in self.meshes.views):
             rotating = self.targets.rotating
             build_lines(self.deck, self.model, self.meshes, self.sets, materials, rotating, owner)
@@ -166,37 +154,23 @@ class SectionBuilder:
             turned = (view.scope.axes_by_element, deck.root.axes_by_element)
             named = next((t for t in tables if key(draft.orientation) in t), None)
             if named is None:
-                names = [n for t in tables for n in t]
-                deck.error(
-                    card,
-                    card.at("ORIENTATION"),
-                    f"no orientation named {draft.orientation!r}",
-                    hint=nearest(draft.orientation, names),
-                )
-                return
+                hint = nearest(draft.orientation, [n for t in tables for n in t])
+                card.refuse(f"no orientation named {draft.orientation!r}", "ORIENTATION", hint)
             angle = named[key(draft.orientation)]
             by_element = next(
                 (t[key(draft.orientation)] for t in turned if key(draft.orientation) in t), None
             )
             if by_element is not None:
-                origin, source, more = by_element
-                found = by_cell(deck, self.sets, view, (origin, source), cells, plane_angle)
-                if found is None:
-                    return
-                by_cells["angle"], angle = found, more
+                origin, source, angle = by_element
+                use = (origin, source)
+                by_cells["angle"] = by_cell(deck, self.sets, view, use, cells, plane_angle)
             elif math.isnan(angle):
                 if material.oriented:
                     text = "axes that turn about a point are not part of this version"
-                    deck.error(
-                        card,
-                        card.at("ORIENTATION"),
-                        text,
-                        hint="give *ORIENTATION, SYSTEM=RECTANGULAR to parts of the body",
-                    )
-                    return
-                deck.note(
-                    f"{card.where}: {card.spelled}: the axes of an isotropic material do "
-                    "not matter; results are in global axes"
+                    hint = "give *ORIENTATION, SYSTEM=RECTANGULAR to parts of the body"
+                    card.refuse(text, "ORIENTATION", hint)
+                card.note(
+                    "the axes of an isotropic material do not matter; results are in global axes"
                 )
                 angle = 0.0
             if view.instance is not None:
@@ -207,34 +181,25 @@ class SectionBuilder:
         for code in distinct(types):
             name = self.meshes.types[code]
             if name in LINES:
-                truss = truss_section(deck, draft, cells[types == code], material)
-                self.model.sections += [truss] if truss else []
+                with suppress(Refused):
+                    truss = truss_section(draft, cells[types == code], material)
+                    self.model.sections.append(truss)
                 continue
             if name in LINE_ELEMENTS:
                 wanted = SECTION_CARDS[LINE_ELEMENTS[name].role]
-                deck.error(card, card.at("ELSET"), f"elements of type {name} take {wanted}")
+                card.error(f"elements of type {name} take {wanted}", "ELSET")
                 continue
             info = ELEMENTS[name]
             ask = info.ask
             if name in WRITTEN_BY_MESHIO and any("written by meshio" in t for t in deck.heading):
                 info, ask = replace(info, plane=""), ASK
             if draft.plane and info.plane and draft.plane != info.plane:
-                deck.error(
-                    card,
-                    card.at("PLANE"),
-                    f"{self.meshes.types[code]} elements are in plane {info.plane}; "
-                    f"PLANE={draft.plane.upper()} does not fit",
-                )
-                return
+                text = f"PLANE={draft.plane.upper()} does not fit"
+                card.refuse(f"{name} elements are in plane {info.plane}; {text}", "PLANE")
             mapped = self.deck.element_map.get(name)
             if ask and not draft.plane and not mapped:
-                deck.error(
-                    card,
-                    card.where,
-                    f"{name} elements: {ask}",
-                    hint=f"or replace them: --element {name}=CPS{info.kind[-1]}",
-                )
-                return
+                hint = f"or replace them: --element {name}=CPS{info.kind[-1]}"
+                card.refuse(f"{name} elements: {ask}", hint=hint)
             plane = draft.plane or info.plane or (mapped[1] if mapped else "") or "stress"
             element = self._element(name, strain != "linear" and self.nonlinear)
             ratio = self._ratio(name, plane) if material.incompressible else 0.0
@@ -250,14 +215,10 @@ class SectionBuilder:
         thickness = self._thickness(draft, cells)
         if draft.thicknesses:
             use = card, draft.thicknesses
-            found = by_cell(deck, self.sets, view, use, cells, read_thickness)
-            if found is None:
-                return
-            by_cells["thickness"] = found
+            by_cells["thickness"] = by_cell(deck, self.sets, view, use, cells, read_thickness)
         if any(plane == "axisymmetric" for _, plane, _ in groups) and draft.nodal:
             text = "an axisymmetric section has no thickness"
-            deck.error(card, card.at("NODALTHICKNESS"), text, hint="remove NODAL THICKNESS")
-            return
+            card.refuse(text, "NODALTHICKNESS", hint="remove NODAL THICKNESS")
         for (element, plane, ratio), parts in groups.items():
             mine = np.sort(np.concatenate(parts))
             law = material
@@ -289,8 +250,7 @@ class SectionBuilder:
                         )
                     )
                 except InputError as error:
-                    deck.error(card, card.where, error.message)
-                    return
+                    card.refuse(error.message)
 
     def _ratio(self, name: str, plane: str) -> float:
         """Poisson's ratio of an incompressible law in elements of a name; 0 where it stays so."""
@@ -321,14 +281,13 @@ class SectionBuilder:
                     self.targets.at = view
                     nodes = self.targets.nodes(item)
                     if nodes is not None:
-                        at = self.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
-                        self.nodal[at] = item.value[0]
+                        self.nodal[self.mesh.node_indices(nodes)] = item.value[0]
             self.targets.at = self.meshes.views[0]
             near, far = self.targets.twins
             self.nodal[near] = self.nodal[far]
         if not self.deck.thicknesses:
             text = "NODAL THICKNESS is given, and no card *NODAL THICKNESS"
-            self.deck.error(draft.card, draft.card.at("NODALTHICKNESS"), text)
+            draft.card.error(text, "NODALTHICKNESS")
         values = np.where(np.isnan(self.nodal), draft.thickness, self.nodal)
         mine = values[nodes_of_cells(self.mesh, cells)]
         # One thickness for all nodes is passed as a scalar.

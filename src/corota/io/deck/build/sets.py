@@ -12,9 +12,8 @@ import numpy as np
 from corota.arrays import Ints, distinct
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import MeshBuilder, View, view_of
-from corota.io.deck.deck import nearest
+from corota.io.deck.card import Card, key, nearest
 from corota.io.deck.elements import WITH_SIDES
-from corota.io.deck.lexer import Card, key
 from corota.mesh.kinds import EDGES
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import MeshBuilder, View, view_of
 from corota.io.deck.build.sets import Elements, Sets
-from corota.io.deck.deck import Deck, nearest
-from corota.io.deck.lexer import key
+from corota.io.deck.card import key, nearest
+from corota.io.deck.deck import Deck
 from corota.model.model import Model
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class Targets:
             full = self.sets.full_name(self.sets.nsets, self.at, target)
             if full:
                 if not len(self.mesh.node_sets.get(self.sets.spelled(self.sets.nsets, full), ())):
-                    self.deck.row_error(draft.card, row, 0, f"node set {target} is empty")
+                    row.error(0, f"node set {target} is empty")
                     return None
                 return self.sets.spelled(self.sets.nsets, full)
             name = self.sets.mesh_name(self.mesh.node_sets, self.at, target)
@@ -73,14 +73,10 @@ class Targets:
             node = found[0].nodes(np.array([int(found[1])]))
             if node[0] >= 0:
                 return node
-            self.deck.row_error(draft.card, row, 0, f"node {target} is not defined")
+            row.error(0, f"node {target} is not defined")
             return None
-        self.deck.row_error(
-            draft.card,
-            row,
-            0,
-            f"no node set named {numerals.shown(target)}",
-            nearest(target, self.mesh.node_sets),
+        row.error(
+            0, f"no node set named {numerals.shown(target)}", nearest(target, self.mesh.node_sets)
         )
         return None
 
@@ -99,21 +95,18 @@ class Targets:
         found = self.deck.amplitudes.get(key(draft.amplitude))
         if found is None:
             names = [a.name for a in self.deck.amplitudes.values()]
-            self.deck.error(
-                draft.card,
-                draft.card.at("AMPLITUDE"),
+            draft.card.error(
                 f"no amplitude named {draft.amplitude!r}",
+                "AMPLITUDE",
                 hint=nearest(draft.amplitude, names),
             )
-            draft.amplitude = ""
             return None
         if key(draft.amplitude) in self.deck.absolute:
             if draft.kind not in ("fixed", "force", "pressure", "surface pressure"):
-                self.deck.error(
-                    draft.card,
-                    draft.card.at("AMPLITUDE"),
+                draft.card.error(
                     f"amplitude {draft.amplitude} has VALUE=ABSOLUTE, which fits one number: "
                     "supports, forces and pressures",
+                    "AMPLITUDE",
                     hint="give the load its size and the amplitude VALUE=RELATIVE",
                 )
                 return None

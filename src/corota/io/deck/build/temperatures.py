@@ -35,9 +35,7 @@ def constant_temperature(targets: Targets) -> float | None:
     for item in deck.initial:
         nodes = targets.nodes(item.draft) if item.draft.kind == "initial temperature" else None
         if nodes is not None:
-            found[targets.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes] = (
-                item.draft.value[0]
-            )
+            found[targets.mesh.node_indices(nodes)] = item.draft.value[0]
     cells = [block.nodes.ravel() for block in targets.mesh.cells]
     mine = found[np.concatenate([np.zeros(0, np.int64), *cells])]
     return float(mine[0]) if len(mine) and (mine == mine[0]).all() else None

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from corota.errors import InputError
-from corota.io.deck.deck import nearest
-from corota.io.deck.lexer import key
+from corota.io.deck.card import key, nearest
 from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
 
 if TYPE_CHECKING:
@@ -92,16 +91,14 @@ def _equations(targets: Targets, tie: TieDraft) -> None:
         found = targets.nodes(term)
         if found is None:
             return
-        nodes = model.mesh.nodes_of(found) if isinstance(found, str) else found
+        nodes = model.mesh.node_indices(found)
         if key(term.target) not in deck.unsorted:
             nodes = nodes[np.argsort(labels[nodes])]
         columns.append(nodes)
     count = max(len(nodes) for nodes in columns)
     for term, nodes in zip(tie.terms, columns, strict=True):
         if len(nodes) not in (1, count):
-            deck.row_error(
-                term.card,
-                term.row,
+            term.row.error(
                 0,
                 f"the sets of an equation have as many nodes or one; {term.target} has "
                 f"{len(nodes)}, another {count}",
@@ -117,10 +114,9 @@ def _weighted(targets: Targets, tie: TieDraft) -> None:
     deck, model = targets.deck, targets.model
     draft = deck.couplers.get(key(tie.elset))
     if draft is None:
-        deck.error(
-            tie.card,
-            tie.card.at("ELSET"),
+        tie.card.error(
             f"no set named {tie.elset!r} of DCOUP2D or DCOUP3D elements",
+            "ELSET",
             hint=nearest(tie.elset, deck.couplers),
         )
         return
@@ -131,7 +127,7 @@ def _weighted(targets: Targets, tie: TieDraft) -> None:
     share = np.zeros(model.mesh.n_nodes)
     for nodes, weight in found:
         assert nodes is not None
-        share[model.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes] += weight
+        share[model.mesh.node_indices(nodes)] += weight
     chosen = np.flatnonzero(share)
     if deck.dialect == "calculix" and key(draft.card.value("TYPE")) == "DCOUP3D":
         deck.note(
@@ -154,9 +150,7 @@ def _weighted(targets: Targets, tie: TieDraft) -> None:
 
 def _names(model: Model, nodes: str | Ints | None, node: int) -> bool:
     """Whether a set or nodes hold a node."""
-    return nodes is not None and node in (
-        model.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
-    )
+    return nodes is not None and node in (model.mesh.node_indices(nodes))
 
 
 def _straight(targets: Targets, tie: TieDraft) -> None:
@@ -165,7 +159,7 @@ def _straight(targets: Targets, tie: TieDraft) -> None:
     found = [targets.nodes(term) for term in tie.terms]
     if any(nodes is None for nodes in found):
         return
-    parts = [model.mesh.nodes_of(n) if isinstance(n, str) else n for n in found if n is not None]
+    parts = [model.mesh.node_indices(n) for n in found if n is not None]
     nodes = np.concatenate([np.zeros(0, np.int64), *parts])
     if len(nodes) < 3:
         text = "at least three nodes are expected, beginning with the two of the line"
@@ -205,7 +199,7 @@ def _same(targets: Targets, tie: TieDraft) -> None:
         found = targets.nodes(draft)
         if found is None:
             return
-        pairs.append(model.mesh.nodes_of(found) if isinstance(found, str) else found)
+        pairs.append(model.mesh.node_indices(found))
     first, second = pairs
     if len(second) == 1:
         second = np.broadcast_to(second, len(first))
@@ -223,10 +217,10 @@ def single_node(targets: Targets, draft: Draft) -> int | None:
     found = targets.nodes(draft)
     if found is None:
         return None
-    nodes = targets.mesh.nodes_of(found) if isinstance(found, str) else found
+    nodes = targets.mesh.node_indices(found)
     if len(nodes) != 1:
         text = f"one node is expected; the set {draft.target} has {len(nodes)}"
-        targets.deck.row_error(draft.card, draft.row, 0, text)
+        draft.row.error(0, text)
         return None
     return int(nodes[0])
 

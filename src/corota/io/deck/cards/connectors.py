@@ -4,18 +4,20 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.io.deck.card import Card, Refused, Row, complete, key, nearest
 from corota.io.deck.cards.attachments import add_dashpot, damping_rows
-from corota.io.deck.cards.release import point_of
+from corota.io.deck.cards.release import add_twin, point_of
 from corota.io.deck.cards.step import open_step
 from corota.io.deck.cards.supports import RATES
-from corota.io.deck.cards.tie import PLANAR
-from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import (
+    PLANAR,
     AttachedDraft,
     BehaviorDraft,
     ConnectorDraft,
@@ -24,11 +26,8 @@ from corota.io.deck.drafts import (
     Entry,
     LineDraft,
     NamedSet,
-    NodeBlock,
-    TieDraft,
 )
 from corota.io.deck.elements import LINE_ELEMENTS
-from corota.io.deck.lexer import Card, Row, key
 from corota.model.constraints import Coupling, Equation
 from corota.model.contact import gap_element
 from corota.model.loads import Fixed
@@ -72,24 +71,17 @@ CLOSE = 1e-6
 
 def connector_section(deck: Deck, card: Card) -> None:
     """``*CONNECTOR SECTION, ELSET=[, BEHAVIOR=]``: kinds; orientation of the first node."""
-    rows = list(card.rows())
-    if not deck.required(card, "ELSET"):
-        return
-    if not rows:
-        deck.error(card, card.where, "a data line is missing: the kind of the connection")
-    else:
-        deck.connectors.append(ConnectorDraft(card, rows))
+    if card.required("ELSET"):
+        deck.connectors.append(ConnectorDraft(card, card.lines("the kind of the connection")))
 
 
 def link(deck: Deck, card: Card, row: Row) -> None:
     """``LINK`` of ``*MPC``: two nodes whose distance stays."""
-    deck.extra_fields(card, row, 3)
-    numbers = [deck.node(card, row, i, "the node") for i in (1, 2)]
-    if None in numbers:
-        return
+    row.at_most(3)
+    numbers = complete([deck.node(row, i, "the node") for i in (1, 2)])
     draft = AttachedDraft("CONN2D2", "", card, scope=deck.scope)
-    draft.numbers.append([int(n or 0) for n in numbers])
-    draft.nodes.append([Draft("node", card, row, row.get(i), ()) for i in (1, 2)])
+    draft.numbers.append(numbers)
+    draft.nodes.append([Draft("node", row, row.get(i), ()) for i in (1, 2)])
     draft.connector = ConnectorDraft(card, [row], ("LINK",))
     deck.attached.append(draft)
     deck.connectors.append(draft.connector)
@@ -97,77 +89,57 @@ def link(deck: Deck, card: Card, row: Row) -> None:
 
 def connector_behavior(deck: Deck, card: Card) -> None:
     """``*CONNECTOR BEHAVIOR, NAME=``: opens a behavior."""
-    deck.no_rows(card)
-    name = deck.required(card, "NAME")
+    card.no_rows()
+    name = card.required("NAME")
     deck.behavior = BehaviorDraft(name, card)
     if key(name) in deck.behaviors:
-        deck.error(card, card.at("NAME"), f"behavior {name} is already defined")
+        card.error(f"behavior {name} is already defined", "NAME")
     deck.behaviors[key(name)] = deck.behavior
 
 
 def connector_elasticity(deck: Deck, card: Card) -> None:
     """``*CONNECTOR ELASTICITY, COMPONENT=[, NONLINEAR][, RIGID]``: stiffness, or force and way."""
-    rows, into = list(card.rows()), _behavior(deck, card)
-    if into is None:
-        return
+    into = _behavior(deck, card)
     if card.has("RIGID"):
-        component = _component(deck, card) if card.has("COMPONENT") else None
-        listed = [
-            deck.integer(card, row, i, "the component") for row in rows for i in range(len(row))
-        ]
-        chosen = [component] if component else [i for i in listed if i] or [1, 2, 6]
-        into.rigid |= {int(i) for i in chosen}
+        with suppress(Refused):
+            if card.has("COMPONENT"):
+                into.rigid.add(_component(card))
+                return
+        listed = [row.integer(i, "the component") for row in card.rows() for i in range(len(row))]
+        into.rigid |= {i for i in listed if i} or {1, 2, 6}
         return
-    component = _component(deck, card)
-    if component is None:
-        return
-    if not rows:
-        deck.error(card, card.where, "a data line is missing: the stiffness")
-    elif component in into.elastic:
-        deck.error(card, card.where, f"component {component} is elastic already")
-    else:
-        into.elastic[component] = (card, rows)
+    component = _component(card)
+    rows = card.lines("the stiffness")
+    if component in into.elastic:
+        card.refuse(f"component {component} is elastic already")
+    into.elastic[component] = rows
 
 
 def connector_damping(deck: Deck, card: Card) -> None:
     """``*CONNECTOR DAMPING, COMPONENT=[, NONLINEAR]``: damping, or force and velocity."""
-    rows, into = list(card.rows()), _behavior(deck, card)
-    if into is None:
-        return
+    into = _behavior(deck, card)
     if key(card.value("TYPE")) not in ("", "VISCOUS"):
-        deck.error(card, card.at("TYPE"), "the damping of connectors is viscous")
-        return
-    component = _component(deck, card)
-    if component is not None:
-        into.damped[component] = (card, rows)
+        card.refuse("the damping of connectors is viscous", "TYPE")
+    into.damped[_component(card)] = card
 
 
 def connector_stop(deck: Deck, card: Card) -> None:
     """``*CONNECTOR STOP, COMPONENT=``: smallest, largest relative position."""
-    rows, into = list(card.rows()), _behavior(deck, card)
-    if into is None:
-        return
-    component = _component(deck, card)
-    if component is None:
-        return
+    rows, into, component = list(card.rows()), _behavior(deck, card), _component(card)
     if component == 6:
         text = "stops of a rotation are not part of this version"
-        deck.error(card, card.at("COMPONENT"), text, hint="let an arm meet a *GAP")
-    elif len(rows) != 1 or not any(rows[0].fields[:2]):
-        deck.error(card, card.where, "a data line is expected: smallest, largest position")
-    else:
-        ends = [deck.real(card, rows[0], i, "the stop", math.nan) for i in (0, 1)]
-        if None not in ends:
-            low, high = (float(end or 0.0) for end in ends)
-            if low > high:
-                deck.row_error(card, rows[0], 0, f"the stops cross: {low:g} > {high:g}")
-            else:
-                into.stops[component] = (low, high)
+        card.refuse(text, "COMPONENT", hint="let an arm meet a *GAP")
+    if len(rows) != 1 or not any(rows[0].fields[:2]):
+        card.refuse("a data line is expected: smallest, largest position")
+    low, high = rows[0].reals(("the stop", "the stop"), math.nan)
+    if low > high:
+        rows[0].refuse(0, f"the stops cross: {low:g} > {high:g}")
+    into.stops[component] = (low, high)
 
 
 def connector_motion(deck: Deck, card: Card) -> None:
     """``*CONNECTOR MOTION[, TYPE=]``: element or set, component, value."""
-    order = RATES[deck.choice(card, "TYPE", RATES, "DISPLACEMENT")]
+    order = RATES[card.choice("TYPE", RATES, "DISPLACEMENT")]
     _drive(deck, card, "fixed", order)
 
 
@@ -177,44 +149,33 @@ def connector_load(deck: Deck, card: Card) -> None:
 
 
 def _drive(deck: Deck, card: Card, kind: str, order: int) -> None:
-    if open_step(deck, card) is None:
-        return
-    if deck.choice(card, "OP", ("MOD", "NEW"), "MOD") == "NEW":
+    open_step(deck, card)
+    if card.choice("OP", ("MOD", "NEW"), "MOD") == "NEW":
         text = f"OP=NEW of {card.spelled} is not part of this version"
-        deck.error(card, card.at("OP"), text, hint="give the components that change")
-        return
+        card.refuse(text, "OP", hint="give the components that change")
     for row in card.rows():
-        deck.extra_fields(card, row, 3)
-        component = deck.integer(card, row, 1, "the component")
-        value = deck.real(card, row, 2, "the value", 0.0)
-        if component is None or value is None:
-            continue
-        if component not in PLANAR:
-            text = f"expected component 1, 2 or 6 (rotation), found {component}"
-            deck.row_error(card, row, 1, text)
-            continue
-        draft = Draft(kind, card, row, row.get(0), (value,), component, card.value("AMPLITUDE"))
-        draft.order = order
-        deck.drives.append((len(deck.steps) - 1, draft))
+        row.at_most(3)
+        component, value = row.integer(1, "the component"), row.real(2, "the value", 0.0)
+        if component is not None and value is not None and component not in PLANAR:
+            row.error(1, f"expected component 1, 2 or 6 (rotation), found {component}")
+        elif component is not None and value is not None:
+            draft = Draft(kind, row, row.get(0), (value,), component, order=order)
+            deck.drives.append((len(deck.steps) - 1, draft))
 
 
-def _behavior(deck: Deck, card: Card) -> BehaviorDraft | None:
+def _behavior(deck: Deck, card: Card) -> BehaviorDraft:
     if deck.behavior is None:
-        text = "the card belongs under a *CONNECTOR BEHAVIOR, but there is none before it"
-        deck.error(card, card.where, text)
+        card.refuse("the card belongs under a *CONNECTOR BEHAVIOR, but there is none before it")
     return deck.behavior
 
 
-def _component(deck: Deck, card: Card) -> int | None:
+def _component(card: Card) -> int:
     if not card.has("COMPONENT"):
-        text = "COMPONENT= is missing: components that act on each other are not supported"
-        deck.error(card, card.where, text)
-        return None
-    component = deck.parameter_integer(card, "COMPONENT", 1, 1)
+        card.refuse("COMPONENT= is missing: components that act on each other are not supported")
+    component = card.integer("COMPONENT", 1, 1)
     if component not in PLANAR:
         text = f"expected component 1, 2 or 6 (rotation), found {component}"
-        deck.error(card, card.at("COMPONENT"), text)
-        return None
+        card.refuse(text, "COMPONENT")
     return component
 
 
@@ -231,18 +192,18 @@ def prepare_connectors(deck: Deck) -> None:
         if not mine:
             names = [d.name for d in deck.attached if d.type == "CONN2D2"]
             text = f"no *ELEMENT, TYPE=CONN2D2 with the set {name!r}"
-            deck.error(section.card, section.card.at("ELSET"), text, hint=nearest(name, names))
+            section.card.error(text, "ELSET", hint=nearest(name, names))
         for draft in mine:
-            if draft.connector is not None:
-                deck.error(
-                    section.card, section.card.at("ELSET"), f"{name} already has its section"
-                )
-                continue
-            draft.connector = section
-            if _read(deck, draft, section):
-                _springs(deck, draft, section)
+            with suppress(Refused):
+                if draft.connector is not None:
+                    section.card.refuse(f"{name} already has its section", "ELSET")
+                draft.connector = section
+                _read(deck, draft, section)
+                with suppress(Refused):
+                    _springs(draft, section)
                 _pins(deck, draft, section)
-    _controls(deck)
+    with suppress(Refused):
+        _controls(deck)
 
 
 def _controls(deck: Deck) -> None:
@@ -259,72 +220,53 @@ def _controls(deck: Deck) -> None:
                 if wanted not in (key(draft.name), str(label)):
                     continue
                 found = True
+                at = drive.row.where
                 if draft.scope is not deck.root:
                     text = "connectors of a part cannot be driven"
-                    deck.error(drive.card, drive.row.where, text, hint="give them in *ASSEMBLY")
-                    return
-                at = drive.row.where
+                    deck.error(drive.card, at, text, hint="give them in *ASSEMBLY")
+                    raise Refused
                 node = made.get((label, drive.index))
                 if node is None:
-                    blocks = [block for scope in scopes for block in scope.nodes]
-                    own = 1 + max(int(b.labels.max(initial=0)) for b in blocks)
-                    lines = np.array([at.line], np.int64)
-                    new = NodeBlock(np.array([own], np.int64), blocks[0].points[:1], at.file, lines)
-                    deck.root.nodes.append(new)
-                    node = Draft("node", draft.card, drive.row, str(own), (0.0,))
-                    made[label, drive.index] = node
+                    point = next(b.points[:1] for scope in scopes for b in scope.nodes)
+                    own = deck.root.add_node(point, at, scopes)
+                    made[label, drive.index] = node = Draft("node", drive.row, str(own), (0.0,))
                     draft.controls.append((place, drive.index, drive, node))
-                own_draft = replace(drive, target=node.target, index=0)
-                into = (
-                    deck.steps[step].supports if drive.kind == "fixed" else deck.steps[step].loads
-                )
-                into.append(own_draft)
+                now = deck.steps[step]
+                into = now.supports if drive.kind == "fixed" else now.loads
+                into.append(replace(drive, target=node.target, index=0))
         if not found:
             names = [d.name for d in deck.attached if d.type == "CONN2D2"]
             text = f"no element or set of *ELEMENT, TYPE=CONN2D2 named {drive.target!r}"
             deck.error(drive.card, drive.row.where, text, hint=nearest(drive.target, names))
 
 
-def _read(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> bool:
+def _read(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> None:
     """Fill in kind, behavior and angle of a section."""
     card, row = section.card, section.rows[0]
     words = tuple(key(word) for word in row.fields if word)
     kind = PAIRS.get(words, words[0] if len(words) == 1 else "")
     if kind not in FREE:
-        hint = (
-            f"there are {', '.join(k for k in FREE if ',' not in k)}, some with ALIGN or ROTATION"
-        )
-        deck.row_error(
-            card, row, 0, f"connection {row.text.strip()!r} is not part of this version", hint
-        )
-        return False
+        known = ", ".join(k for k in FREE if "," not in k)
+        hint = f"there are {known}, some with ALIGN or ROTATION"
+        row.refuse(0, f"connection {row.text.strip()!r} is not part of this version", hint)
     section.kinds = (kind, *words[1:])
     if len(section.rows) > 1 and section.rows[1].get(0):
         name = section.rows[1].get(0)
-        scopes = (draft.scope, deck.root)
-        found = next(
-            (s.orientations[key(name)] for s in scopes if key(name) in s.orientations), None
-        )
-        if found is None:
-            deck.row_error(card, section.rows[1], 0, f"no orientation named {name!r}")
-            return False
-        if math.isnan(found):
-            deck.row_error(card, section.rows[1], 0, f"{name} is not rectangular")
-            return False
-        section.angle = found
+        angle = (deck.root.orientations | draft.scope.orientations).get(key(name))
+        if angle is None:
+            section.rows[1].refuse(0, f"no orientation named {name!r}")
+        if math.isnan(angle):
+            section.rows[1].refuse(0, f"{name} is not rectangular")
+        section.angle = angle
     if card.has("BEHAVIOR"):
-        section.behavior = deck.behaviors.get(key(card.value("BEHAVIOR")))
-        if section.behavior is None:
-            text = f"no *CONNECTOR BEHAVIOR named {card.value('BEHAVIOR')!r}"
-            deck.error(card, card.at("BEHAVIOR"), text)
-            return False
-        given = {*section.behavior.elastic, *section.behavior.damped, *section.behavior.stops}
+        behavior = section.behavior = deck.behaviors.get(key(card.value("BEHAVIOR")))
+        if behavior is None:
+            card.refuse(f"no *CONNECTOR BEHAVIOR named {card.value('BEHAVIOR')!r}", "BEHAVIOR")
+        given = {*behavior.elastic, *behavior.damped, *behavior.stops}
         wrong = sorted(given - _components(section.kinds))
         if wrong:
             text = f"component {wrong[0]} of a connection {kind} has no spring, damper or stop"
-            deck.error(section.behavior.card, section.behavior.card.where, text)
-            return False
-    return True
+            behavior.card.refuse(text)
 
 
 def _components(kinds: tuple[str, ...]) -> set[int]:
@@ -340,57 +282,45 @@ def _components(kinds: tuple[str, ...]) -> set[int]:
     return (found | ({6} if "ROTATION" in words else set())) & {*FREE[kind]}
 
 
-def _directions(deck: Deck, section: ConnectorDraft, component: int) -> tuple[int, bool] | None:
+def _directions(section: ConnectorDraft, component: int) -> tuple[int, bool]:
     """Dof (1, 2, 6) of a component, and whether it points the other way."""
     if component == 6:
         return 6, False
     turned = section.angle / (0.5 * math.pi) + (component == 2)
     quarter = round(turned)
     if abs(turned - quarter) > 1e-6:
-        text = (
-            "springs and dampers of connectors act along x and y, not along an orientation between"
-        )
-        deck.error(section.card, section.card.where, text, hint="give AXIAL, or SPRINGA")
-        return None
+        text = "springs and dampers of connectors act along x and y, not along an orientation"
+        section.card.refuse(f"{text} between", hint="give AXIAL, or SPRINGA")
     return (1, 2)[quarter % 2], quarter % 4 in (2, 3)
 
 
-def _springs(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> None:
+def _springs(draft: AttachedDraft, section: ConnectorDraft) -> None:
     """Make a spring element of each elastic component."""
     behavior = section.behavior
-    for component, (card, rows) in (behavior.elastic if behavior else {}).items():
+    for component, rows in (behavior.elastic if behavior else {}).items():
         along = section.kinds[0].startswith("AXIAL") and component == 1
-        type_, turned, lead = "SPRINGA", False, []
+        type_, turned, lead, card = "SPRINGA", False, [], rows[0].card
         if not along:
-            found = _directions(deck, section, component)
-            if found is None:
-                return
-            type_, (dof, turned) = "SPRING2", found
-            text = f"{dof}, {dof}"
-            lead = [Row(rows[0].where, text, text.split(", "), [0, 3])]
+            type_, (dof, turned) = "SPRING2", _directions(section, component)
+            lead = [card.row(f"{dof}, {dof}", rows[0].where)]
         for label, numbers, nodes in zip(draft.labels, draft.numbers, draft.nodes, strict=True):
             if len(numbers) == 1 and along:
-                text = "AXIAL to the ground has no line: give it two nodes"
-                deck.row_error(draft.card, nodes[0].row, 1, text)
-                return
+                nodes[0].row.refuse(1, "AXIAL to the ground has no line: give it two nodes")
             name = f"_CONNECTOR-{label}-{component}"
             ends = numbers if along or turned else numbers[::-1]  # SPRING2 takes first less second
-            kind = "SPRING1" if len(numbers) == 1 else type_
-            own = 1 + max(
-                [*(int(b.labels.max(initial=0)) for b in draft.scope.elements), *draft.labels]
+            known = [int(b.labels.max(initial=0)) for b in draft.scope.elements]
+            own, at = np.array([1 + max([*known, *draft.labels])], np.int64), nodes[0].row.where
+            draft.scope.elements.append(
+                ElementBlock(
+                    draft.card,
+                    "SPRING1" if len(numbers) == 1 else type_,
+                    own,
+                    np.array([ends], np.int64),
+                    at.file,
+                    np.array([at.line], np.int64),
+                )
             )
-            at = nodes[0].row.where
-            block = ElementBlock(
-                draft.card,
-                kind,
-                np.array([own], np.int64),
-                np.array([ends], np.int64),
-                at.file,
-                np.array([at.line], np.int64),
-            )
-            draft.scope.elements.append(block)
-            named = NamedSet(name, at, [Entry(at, block.labels)])
-            draft.scope.elsets[key(name)] = named
+            draft.scope.elsets[key(name)] = NamedSet(name, at, [Entry(at, own)])
             draft.scope.lines.append(LineDraft("spring", card, name, rows=[*lead, *rows]))
 
 
@@ -403,17 +333,8 @@ def _pins(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> None:
     hinged = np.concatenate([np.zeros(0, np.int64), *(b.nodes.ravel() for b in beams)])
     for numbers, nodes in zip(draft.numbers, draft.nodes, strict=True):
         point = point_of(draft.scope, numbers[0])
-        if not np.isin(numbers, hinged).all() or point is None:
-            continue
-        own = 1 + max(int(b.labels.max(initial=0)) for b in draft.scope.nodes)
-        at = nodes[0].row.where
-        lines = np.array([at.line], np.int64)
-        draft.scope.nodes.append(NodeBlock(np.array([own], np.int64), point, at.file, lines))
-        pin = Draft("node", draft.card, nodes[0].row, str(own), (0.0,))
-        tie = TieDraft("same", draft.card, at, ready=True, dofs=(0, 1))
-        tie.target, tie.terms = pin, [nodes[0]]
-        deck.ties.append(tie)
-        nodes.append(pin)
+        if np.isin(numbers, hinged).all() and point is not None:
+            nodes.append(add_twin(deck, draft.scope, nodes[0], point))
 
 
 def connect(targets: Targets, draft: AttachedDraft) -> None:
@@ -421,7 +342,7 @@ def connect(targets: Targets, draft: AttachedDraft) -> None:
     section = draft.connector
     if section is None:
         text = f"no *CONNECTOR SECTION, ELSET={draft.name} says what these elements join"
-        targets.deck.error(draft.card, draft.card.at("ELSET"), text)
+        draft.card.error(text, "ELSET")
         return
     for place, drafts in enumerate(draft.nodes):
         found = [targets.nodes(d) for d in drafts]
@@ -430,7 +351,8 @@ def connect(targets: Targets, draft: AttachedDraft) -> None:
             one = _Connector(targets, section, drafts[0].row.where, nodes)
             held = _held(targets)
             one.join(held)
-            one.damp()
+            with suppress(Refused):
+                one.damp()
             one.stop(f"{draft.name}-{draft.labels[place]}" if draft.labels else "")
             for at, component, drive, control in draft.controls:
                 node = targets.nodes(control) if at == place else None
@@ -663,17 +585,13 @@ class _Connector:
                     "name a node without rotation first, or use AXIAL",
                 )
                 return
-        for component, (card, rows) in behavior.damped.items():
-            table = damping_rows(self.deck, card, rows)
-            if table is None:
-                return
+        for component, card in behavior.damped.items():
+            table = damping_rows(card, list(card.rows()))
             value: tuple[float, ...] = (table[0][1],)
             nodes = self.nodes[:2]
             if not (self.kind.startswith("AXIAL") and component == 1):
-                found = _directions(self.deck, self.section, component)
-                if found is None:
-                    return
-                value += (float(PLANAR[found[0]]),)
-                nodes = nodes if found[1] else nodes[::-1]  # its velocity is first less second
+                dof, turned = _directions(self.section, component)
+                value += (float(PLANAR[dof]),)
+                nodes = nodes if turned else nodes[::-1]  # its velocity is first less second
             curve = table if card.has("NONLINEAR") else ()
             add_dashpot(self.deck, self.model, card, self.where, nodes, value, curve)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.card import Card, Refused, Row, key, nearest
+from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import DistributionDraft
-from corota.io.deck.lexer import Card, Row, key
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,72 +19,60 @@ if TYPE_CHECKING:
     from corota.io.deck.build.mesh import View
     from corota.io.deck.build.sets import Sets
 
-    Read = Callable[[Deck, Card, Row, int], float | None]
+    Read = Callable[[Row, int], float]
 
 
 def distribution(deck: Deck, card: Card) -> None:
     """``*DISTRIBUTION, NAME=, LOCATION=ELEMENT``: default; element or set, values."""
-    name = deck.required(card, "NAME")
-    place = deck.choice(card, "LOCATION", ("ELEMENT", "NODE", "NONE"), "ELEMENT")
+    name = card.required("NAME")
+    place = card.choice("LOCATION", ("ELEMENT", "NODE", "NONE"), "ELEMENT")
     if place != "ELEMENT":
         hint = "give thicknesses of nodes by *NODAL THICKNESS" if place == "NODE" else ""
-        deck.error(card, card.at("LOCATION"), "values are given by element", hint=hint)
-        return
-    rows = list(card.rows())
-    if not rows:
-        deck.error(card, card.where, "a data line is missing: the default values")
-    elif name and key(name) in deck.scope.distributions:
-        deck.error(card, card.at("NAME"), f"distribution {name} is already defined")
+        card.refuse("values are given by element", "LOCATION", hint)
+    rows = card.lines("the default values")
+    if name and key(name) in deck.scope.distributions:
+        card.error(f"distribution {name} is already defined", "NAME")
     elif name:
         deck.scope.distributions[key(name)] = DistributionDraft(name, card, rows)
 
 
 def distribution_table(deck: Deck, card: Card) -> None:
     """``*DISTRIBUTION TABLE``: kinds of the values, which follow from where they are used."""
-    list(card.rows())
 
 
-def plane_angle(deck: Deck, card: Card, row: Row, first: int = 0) -> float | None:
+def plane_angle(row: Row, first: int = 0) -> float:
     """Angle of the first axis [rad] from six coordinates of a line, after `first` fields.
 
-    They are a point on the first axis and one in the plane; None after an error.
+    They are a point on the first axis and one in the plane.
+
+    Raises
+    ------
+    Refused
+        After an error.
     """
-    deck.extra_fields(card, row, first + 6)
-    names = ("ax", "ay", "az", "bx", "by", "bz")
-    values = [deck.real(card, row, first + i, name, 0.0) for i, name in enumerate(names)]
-    if None in values:
-        return None
-    ax, ay, az, bx, by, bz = (float(v or 0.0) for v in values)
+    row.at_most(first + 6)
+    ax, ay, az, bx, by, bz = row.reals(("ax", "ay", "az", "bx", "by", "bz"), 0.0, first)
     scale = math.hypot(ax, ay)
     if scale == 0.0 or abs(az) > 1e-9 * scale or abs(bz) > 1e-9 * math.hypot(bx, by, bz):
-        text = "both points must lie in the plane z = 0, off the origin"
-        deck.row_error(card, row, first, text)
-        return None
+        row.refuse(first, "both points must lie in the plane z = 0, off the origin")
     cross = ax * by - ay * bx
     if abs(cross) <= 1e-12 * scale * math.hypot(bx, by):
-        deck.row_error(card, row, first + 3, "the two points and the origin lie on one line")
-        return None
+        row.refuse(first + 3, "the two points and the origin lie on one line")
     if cross < 0.0:
-        text = "the third axis would point to -z; give b left of the line to a"
-        deck.row_error(card, row, first + 3, text)
-        return None
+        row.refuse(first + 3, "the third axis would point to -z; give b left of the line to a")
     return math.atan2(ay, ax)
 
 
-def thickness(deck: Deck, card: Card, row: Row, first: int = 0) -> float | None:
-    """A thickness after `first` fields; None after an error."""
-    deck.extra_fields(card, row, first + 1)
-    value = deck.real(card, row, first, "the thickness")
-    if value is not None and value <= 0.0:
-        deck.row_error(card, row, first, f"the thickness must be > 0, not {value:g}")
-        return None
-    return value
+def thickness(row: Row, first: int = 0) -> float:
+    """A thickness after `first` fields; as :func:`plane_angle`."""
+    row.at_most(first + 1)
+    return row.positive(("the thickness",), first)[0]
 
 
 def by_cell(
     deck: Deck, sets: Sets, view: View, use: tuple[Card, str], cells: Ints, read: Read
-) -> Floats | None:
-    """Values of a distribution in cells, shape (n,); None after an error.
+) -> Floats:
+    """Values of a distribution in cells, shape (n,).
 
     Parameters
     ----------
@@ -93,29 +81,30 @@ def by_cell(
     cells : ndarray of int, shape (n,)
     read : callable
         Reads a value from a line.
+
+    Raises
+    ------
+    Refused
+        After an error.
     """
     card, name = use
     known = deck.root.distributions | view.scope.distributions
     found = known.get(key(name))
     if found is None:
         hint = nearest(name, [d.name for d in known.values()])
-        deck.error(card, card.where, f"no distribution named {name!r}", hint=hint)
-        return None
+        card.refuse(f"no distribution named {name!r}", hint=hint)
     out = np.full(len(cells), math.nan)
     for row in found.rows:
-        value = read(deck, found.card, row, 1)
-        if value is None:
-            return None
+        value = read(row, 1)
         if not row.get(0):
             out[:] = value
             continue
         named = sets.elements(view, row.get(0), row.at(0), found.card, row.text)
         if named is None:
-            return None
+            raise Refused
         out[np.isin(cells, named.cells)] = value
     if np.isnan(out).any():
         label = sets.mesh.cell_labels[cells[np.isnan(out)][0]]
         text = f"distribution {found.name} has no value for element {label}"
-        deck.error(found.card, found.card.where, text, hint="give the default on its first line")
-        return None
+        found.card.refuse(text, hint="give the default on its first line")
     return out

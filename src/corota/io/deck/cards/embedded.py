@@ -18,8 +18,8 @@ from corota.model.constraints import Equation
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
     from corota.io.deck.build.targets import Targets
+    from corota.io.deck.card import Card
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
     from corota.mesh.data import Mesh
 
 #: Share of the size of its host by which a node may lie outside.
@@ -43,9 +43,9 @@ def embedded_element(deck: Deck, card: Card) -> None:
     for row in card.rows():
         for index in range(len(row)):
             if row.get(index):
-                draft.targets.append(Draft("elements", card, row, row.get(index), ()))
+                draft.targets.append(Draft("elements", row, row.get(index), ()))
     if not draft.targets:
-        deck.error(card, card.where, "a data line is missing: the sets of embedded elements")
+        card.error("a data line is missing: the sets of embedded elements")
     else:
         deck.later("sections", add_embedded, draft)
 
@@ -69,7 +69,7 @@ def add_embedded(targets: Targets, drafts: list[EmbeddedDraft]) -> None:
             if named is None:
                 continue
             host = np.setdiff1d(named.cells[planar[named.cells]], inner)
-        share = deck.parameter_number(card, "EXTERIORTOLERANCE", OUTSIDE, 0.0)
+        share = card.number("EXTERIORTOLERANCE", OUTSIDE, 0.0)
         free = np.setdiff1d(nodes_of_cells(mesh, inner), nodes_of_cells(mesh, host))
         _follow(targets, draft, free, host, share)
 
@@ -87,9 +87,7 @@ def _follow(
         near = np.flatnonzero(((x >= low - margin) & (x <= high + margin)).all(axis=1))
         places = [_natural(mesh, int(host[i]), x) for i in near.tolist()]
         if not places or min(p[1] for p in places) > 2.0 * outside + ROUNDING:
-            targets.deck.error(
-                draft.card,
-                draft.card.where,
+            draft.card.error(
                 f"node {mesh.node_labels[node]} of the embedded elements is in no element of the "
                 f"host{' ' + draft.host if draft.host else ''}",
                 hint="move it, or enlarge the host or EXTERIOR TOLERANCE",

@@ -11,32 +11,31 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io.deck.build.change_sections import change_sections
+from corota.io.deck.card import complete
 from corota.io.deck.drafts import Draft
 from corota.model.plasticity import Mises, Voce
 
 if TYPE_CHECKING:
     from corota.io.deck.build.targets import Targets
+    from corota.io.deck.card import Card
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
     from corota.model.sections import Section
 
 
 def initial_hardening(deck: Deck, card: Card) -> None:
     """Element or set, equivalent plastic strain; back-stresses must be zero."""
     for row in card.rows():
-        strain = deck.real(card, row, 1, "the equivalent plastic strain")
-        back = [deck.real(card, row, i, "the back-stress", 0.0) for i in range(2, len(row))]
-        if strain is None or None in back:
-            return
+        values = [row.real(1, "the equivalent plastic strain")]
+        values += [row.real(i, "the back-stress", 0.0) for i in range(2, len(row))]
+        strain, *back = complete(values)
         if any(back):
-            deck.row_error(card, row, 2, "initial back-stresses are not part of this version")
+            row.error(2, "initial back-stresses are not part of this version")
         elif strain < 0.0:
-            deck.row_error(card, row, 1, f"it must be >= 0, not {strain:g}")
+            row.error(1, f"it must be >= 0, not {strain:g}")
         elif not row.get(0):
-            deck.row_error(card, row, 0, "an element number or a set is missing")
+            row.error(0, "an element number or a set is missing")
         else:
-            draft = Draft("hardening", card, row, row.get(0), (strain,))
-            deck.later("sections", harden, draft)
+            deck.later("sections", harden, Draft("hardening", row, row.get(0), (strain,)))
 
 
 def harden(targets: Targets, drafts: list[Draft]) -> None:
@@ -50,7 +49,7 @@ def harden(targets: Targets, drafts: list[Draft]) -> None:
     try:
         change_sections(targets.model, strain, 0.0, _hardened)
     except InputError as error:
-        deck.error(card, card.where, error.message)
+        card.error(error.message)
     deck.note(f"{card.where}: {card.spelled}, TYPE=HARDENING: PEEQ is without the initial one")
 
 

@@ -11,9 +11,9 @@ from corota.model import hyperelastic as rubber
 from corota.model.mullins import Mullins
 
 if TYPE_CHECKING:
+    from corota.io.deck.card import Card
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import MaterialDraft
-    from corota.io.deck.lexer import Card
     from corota.model.materials import Material
 
 #: Class of each kind.
@@ -36,10 +36,8 @@ def hyperelastic(deck: Deck, card: Card) -> None:
     """``*HYPERELASTIC, kind[, N=][, TEST DATA INPUT[, POISSON=]]``."""
     given = [kind for kind in CLASSES if card.has(kind)]
     if len(given) > 1:
-        deck.error(card, card.at(given[1]), f"{given[0]} and {given[1]} are both given")
-        return
-    kind = given[0] if given else "POLYNOMIAL"
-    _law(deck, card, kind)
+        card.refuse(f"{given[0]} and {given[1]} are both given", given[1])
+    _law(deck, card, given[0] if given else "POLYNOMIAL")
 
 
 def hyperfoam(deck: Deck, card: Card) -> None:
@@ -50,31 +48,21 @@ def hyperfoam(deck: Deck, card: Card) -> None:
 def _law(deck: Deck, card: Card, kind: str) -> None:
     moduli(deck, card)
     most = MOST.get(kind, 0)
-    count = deck.parameter_integer(card, "N", 1, 1) if most else 0
+    count = card.integer("N", 1, 1) if most else 0
     if count > most:
-        deck.error(card, card.at("N"), f"{kind} has at most {most} terms, not {count}")
-        return
+        card.refuse(f"{kind} has at most {most} terms, not {count}", "N")
     name = f"{kind}{count or ''}"
     if not card.has("TESTDATAINPUT"):
         if card.has("POISSON"):
-            deck.error(card, card.at("POISSON"), "POISSON= goes with TEST DATA INPUT")
-            return
+            card.refuse("POISSON= goes with TEST DATA INPUT", "POISSON")
         constants(deck, card, name)
         return
-    deck.no_rows(card)
-    found = open_material(deck, card)
-    if found is None:
-        return
-    if found.law:
-        deck.error(
-            card, card.where, f"material {found.name} already has constants ({found.law_where})"
-        )
-        return
+    card.no_rows()
+    found = open_material(deck, card, new_law=True)
     found.law, found.law_where, found.law_card = name, card.where, card
-    ratio = deck.parameter_number(card, "POISSON", 0.0, 0.0)
+    ratio = card.number("POISSON", 0.0, 0.0)
     if ratio >= 0.5:
-        deck.error(card, card.at("POISSON"), f"POISSON= must be less than 0.5, not {ratio:g}")
-        return
+        card.refuse(f"POISSON= must be less than 0.5, not {ratio:g}", "POISSON")
     found.fit = (kind, count, ratio)
 
 
@@ -83,41 +71,25 @@ def test_data(deck: Deck, card: Card, test: str) -> None:
     found = open_material(deck, card)
     rows = []
     for row in card.rows():
-        deck.extra_fields(card, row, 2)
-        stress = deck.real(card, row, 0, "the nominal stress")
-        strain = deck.real(card, row, 1, "the nominal strain")
-        if stress is None or strain is None:
-            return
+        row.at_most(2)
+        stress, strain = row.reals(("the nominal stress", "the nominal strain"))
         rows.append((stress, strain))
     if not rows:
-        deck.error(card, card.where, "data lines are missing: nominal stress, nominal strain")
-    elif found is not None and found.fit is None:
-        deck.error(
-            card,
-            card.where,
-            "test data belong below *HYPERELASTIC or *HYPERFOAM with TEST DATA INPUT",
-        )
-    elif found is not None:
+        card.error("data lines are missing: nominal stress, nominal strain")
+    elif found.fit is None:
+        card.error("test data belong below *HYPERELASTIC or *HYPERFOAM with TEST DATA INPUT")
+    else:
         found.tests.setdefault(test, []).extend(rows)
 
 
 def mullins_effect(deck: Deck, card: Card) -> None:
     """``*MULLINS EFFECT``: r, m and beta of the softening of the open hyperelastic material."""
     found = open_material(deck, card)
-    rows = list(card.rows())
-    if found is None:
-        return
-    if len(rows) != 1:
-        deck.error(card, card.where, "one data line is expected: r, m, beta")
-        return
-    deck.extra_fields(card, rows[0], 3)
-    r, m = (deck.real(card, rows[0], i, name) for i, name in enumerate(("r", "m")))
-    beta = deck.real(card, rows[0], 2, "beta", 0.0)
-    if r is None or m is None or beta is None:
-        return
+    row = card.one_line("r, m, beta")
+    row.at_most(3)
+    r, m, beta = row.reals(("r", "m", "beta"), 0.0, required=2)
     if found.softening_card is not None:
-        deck.error(card, card.where, f"material {found.name} already has a {card.spelled}")
-        return
+        card.refuse(f"material {found.name} already has a {card.spelled}")
     found.softening, found.softening_card = (r, m, beta), card
 
 

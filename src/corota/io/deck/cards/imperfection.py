@@ -3,14 +3,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.errors import FileError
+from corota.io.deck.card import Card, Refused, Row
 from corota.io.deck.drafts import Draft
-from corota.io.deck.lexer import Card, Row
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -40,38 +41,32 @@ class ImperfectionDraft:
 
 def imperfection(deck: Deck, card: Card) -> None:
     """``*IMPERFECTION, FILE=, STEP=[, INC=][, NSET=]``: mode, factor; or node or set, x, y."""
-    deck.choice(card, "SYSTEM", ("R",), "R")
+    card.choice("SYSTEM", ("R",), "R")
     draft = ImperfectionDraft(card, card.value("FILE"))
     if card.has("FILE"):
-        deck.required(card, "FILE")
-        if deck.required(card, "STEP"):
-            draft.step = deck.parameter_integer(card, "STEP", 1, 1)
-        draft.increment = deck.parameter_integer(card, "INC", 0, 1)
+        card.required("FILE")
+        if card.required("STEP"):
+            draft.step = card.integer("STEP", 1, 1)
+        draft.increment = card.integer("INC", 0, 1)
     else:
         for name in ("STEP", "INC", "NSET"):
             if card.has(name):
-                deck.error(card, card.at(name), f"{name}= goes with FILE=")
-    rows = list(card.rows())
-    if not rows:
-        what = "a mode and its factor" if draft.file else "a node and its displacement"
-        deck.error(card, card.where, f"a data line is missing: {what}")
-    for row in rows:
+                card.error(f"{name}= goes with FILE=", name)
+    for row in card.lines("a mode and its factor" if draft.file else "a node and its displacement"):
         if draft.file:
-            deck.extra_fields(card, row, 2)
-            mode = deck.integer(card, row, 0, "the mode")
-            factor = deck.real(card, row, 1, "the factor")
+            row.at_most(2)
+            mode, factor = row.integer(0, "the mode"), row.real(1, "the factor")
             if mode is not None and factor is not None:
                 draft.modes.append((row, mode, factor))
             continue
-        deck.extra_fields(card, row, 4)
-        moved = [deck.real(card, row, i, "the displacement", 0.0) for i in (1, 2, 3)]
-        if moved[2]:
-            deck.row_error(card, row, 3, "a displacement out of the plane is not supported")
-        elif None not in moved and row.get(0):
-            by = (float(moved[0] or 0.0), float(moved[1] or 0.0))
-            draft.moves.append(Draft("imperfection", card, row, row.get(0), by))
+        row.at_most(4)
+        x, y, z = (row.real(i, "the displacement", 0.0) for i in (1, 2, 3))
+        if z:
+            row.error(3, "a displacement out of the plane is not supported")
         elif not row.get(0):
-            deck.row_error(card, row, 0, "a node number or a set is missing")
+            row.error(0, "a node number or a set is missing")
+        elif x is not None and y is not None and z is not None:
+            draft.moves.append(Draft("imperfection", row, row.get(0), (x, y)))
     deck.later("mesh", move_nodes, draft)
 
 
@@ -85,53 +80,41 @@ def move_nodes(targets: Targets, drafts: list[ImperfectionDraft]) -> None:
                 mesh.points[mesh.node_indices(nodes)] += move.value
         if not draft.file or not draft.modes:
             continue
-        path = _results_of(deck, draft)
-        if path is None:
-            continue
-        nodes = np.arange(mesh.n_nodes)
-        if draft.card.has("NSET"):
-            card, name = draft.card, draft.card.value("NSET")
-            row = Row(card.where, card.text, [name], [card.at("NSET").column])
-            found = find(Draft("imperfection", card, row, name, ()))
-            if found is None:
-                continue
-            nodes = mesh.node_indices(found)
-        try:
-            _move_by_results(deck, draft, path, mesh, nodes)
-        except FileError as error:
-            deck.error(draft.card, draft.card.at("FILE"), str(error))
+        with suppress(Refused):
+            path, nodes = _results_of(deck, draft), np.arange(mesh.n_nodes)
+            if draft.card.has("NSET"):
+                row = draft.card.row_of("NSET")
+                found = find(Draft("imperfection", row, row.get(0), ()))
+                if found is None:
+                    continue
+                nodes = mesh.node_indices(found)
+            try:
+                _move_by_results(draft, path, mesh, nodes)
+            except FileError as error:
+                draft.card.error(str(error), "FILE")
 
 
-def _results_of(deck: Deck, draft: ImperfectionDraft) -> Path | None:
-    """The result file that a card names, in the folder of the deck; ``None`` after an error."""
+def _results_of(deck: Deck, draft: ImperfectionDraft) -> Path:
+    """The result file that a card names, in the folder of the deck."""
     assert deck.lexer is not None
     folder, name = deck.lexer.path.parent, draft.file
     places = [folder / name, *(folder / f"{name}.{ending}" for ending in ENDINGS)]
-    place = draft.card.at("FILE")
     if not all(deck.lexer.allows(path) for path in places):
-        deck.error(
-            draft.card,
-            place,
-            f"FILE={name} is outside the folder of the deck",
-            hint="move the results there, or allow it: --allow-include",
-        )
-        return None
+        text = f"FILE={name} is outside the folder of the deck"
+        hint = "move the results there, or allow it: --allow-include"
+        draft.card.refuse(text, "FILE", hint)
     for path in places:
         if path.is_file():
             deck.lexer.files.add(path.resolve())
             return path
-    deck.error(
-        draft.card,
-        place,
+    draft.card.refuse(
         f"there are no results {name}: neither {', '.join(p.name for p in places)}",
-        hint="run the job with the buckling step first, with its results in this folder",
+        "FILE",
+        "run the job with the buckling step first, with its results in this folder",
     )
-    return None
 
 
-def _move_by_results(
-    deck: Deck, draft: ImperfectionDraft, path: Path, mesh: Mesh, nodes: Ints
-) -> None:
+def _move_by_results(draft: ImperfectionDraft, path: Path, mesh: Mesh, nodes: Ints) -> None:
     from corota.io.result_reader import read_results
 
     results = read_results(path)
@@ -149,22 +132,18 @@ def _move_by_results(
         source = order[at]
         missing = nodes[labels[source] != mesh.node_labels[nodes]]
         if len(missing):
-            deck.error(
-                draft.card,
-                draft.card.at("FILE"),
+            draft.card.error(
                 f"{path.name} has no node {mesh.node_labels[missing[0]]} ({len(missing)} nodes of "
                 "this deck are missing there)",
+                "FILE",
                 hint="NSET= limits the imperfection to the nodes of a set",
             )
             return
         for row, mode, factor in draft.modes:
             if mode not in shapes:
                 there = f"modes {', '.join(map(str, sorted(shapes)))}" if shapes else "nothing"
-                deck.row_error(
-                    draft.card,
-                    row,
-                    0,
-                    f"{path.name} has no mode {mode} in step {draft.step}; there is {there}",
+                row.error(
+                    0, f"{path.name} has no mode {mode} in step {draft.step}; there is {there}"
                 )
                 continue
             mesh.points[nodes] += factor * shapes[mode].U[source]

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,7 +13,8 @@ from corota._core import parse_labels, parse_nodes, parse_table
 from corota.arrays import Ints
 from corota.errors import Location
 from corota.io.deck import numerals
-from corota.io.deck.deck import Deck, int_array, nearest
+from corota.io.deck.card import Card, Chunk, Refused, Row, complete, key, nearest
+from corota.io.deck.deck import Deck, int_array
 from corota.io.deck.drafts import ElementBlock, Entry, NamedSet, NodeBlock, Surface, SurfaceRow
 from corota.io.deck.elements import (
     ALIASES,
@@ -22,7 +25,6 @@ from corota.io.deck.elements import (
     OWN,
     why_unsupported,
 )
-from corota.io.deck.lexer import Card, Chunk, Row, key, split_row
 from corota.lazy import lazy
 from corota.mesh.kinds import N_NODES
 
@@ -51,7 +53,7 @@ def node(deck: Deck, card: Card) -> None:
             deck.scope.nodes.append(block)
             labels_of_card.append(block.labels)
     if card.has("NSET"):
-        _extend(deck, deck.scope.nsets, card, "NSET", labels_of_card)
+        _extend(deck.scope.nsets, card, "NSET", labels_of_card)
 
 
 def _node_block(deck: Deck, card: Card, chunk: Chunk) -> NodeBlock:
@@ -59,8 +61,8 @@ def _node_block(deck: Deck, card: Card, chunk: Chunk) -> NodeBlock:
     labels, points, lines, odd = parse_nodes(source.data, chunk.start, chunk.stop, chunk.line)
     points = points.reshape(-1, 3)
     more_labels, more_points, more_lines = [], [], []
-    for row in _odd_rows(chunk, odd):
-        found = _node_row(deck, card, row)
+    for row in _odd_rows(card, chunk, odd):
+        found = _node_row(deck, row)
         if found is not None:
             more_labels.append(found[0])
             more_points.append(found[1])
@@ -74,24 +76,22 @@ def _node_block(deck: Deck, card: Card, chunk: Chunk) -> NodeBlock:
     return NodeBlock(labels, points, source.name, lines)
 
 
-def _odd_rows(chunk: Chunk, odd: list[tuple[int, int]]) -> Iterator[Row]:
+def _odd_rows(card: Card, chunk: Chunk, odd: list[tuple[int, int]]) -> Iterator[Row]:
     """Lines that the bulk reader handed back, cut by the rules of the lexer."""
     for at, number in odd:
         text, _ = chunk.source.line(chunk.start + at)
         if text.strip():
-            yield split_row(text, Location(chunk.source.name, number))
+            yield card.row(text, Location(chunk.source.name, number))
 
 
-def _node_row(deck: Deck, card: Card, row: Row) -> tuple[int, tuple[float, float, float]] | None:
+def _node_row(deck: Deck, row: Row) -> tuple[int, tuple[float, float, float]] | None:
     rest = [row.get(i) for i in range(4, len(row)) if row.get(i)]
     if rest and (deck.lenient or all(_zero(text) for text in rest)):
         deck.note(f"{row.where}: fields after z of a node are not used")
     else:
-        deck.extra_fields(card, row, 4)
-    label = _label(deck, card, row, "the node number")
-    x = deck.real(card, row, 1, "x", 0.0)
-    y = deck.real(card, row, 2, "y", 0.0)
-    z = deck.real(card, row, 3, "z", 0.0)
+        row.at_most(4)
+    label = _label(row, "the node number")
+    x, y, z = (row.real(i, name, 0.0) for i, name in enumerate("xyz", 1))
     if not any(row.get(i) for i in range(1, len(row))):
         deck.note(f"{row.where}: a node without coordinates is at the origin")
     if label is not None and x is not None and y is not None and z is not None:
@@ -108,7 +108,7 @@ def _zero(text: str) -> bool:
 
 def element(deck: Deck, card: Card) -> None:
     """``*ELEMENT, TYPE=``: label, nodes."""
-    name = deck.required(card, "TYPE")
+    name = card.required("TYPE")
     if not name:
         return
     type_ = key(name)
@@ -124,36 +124,23 @@ def element(deck: Deck, card: Card) -> None:
         size = LINES[type_]
     elif type_ in LINE_ELEMENTS:
         size = LINE_ELEMENTS[type_].n_nodes
-    elif why_unsupported(type_):
-        deck.refused_types.add(type_)
-        deck.error(
-            card,
-            card.at("TYPE"),
-            f"elements of type {name} are not supported: {why_unsupported(type_)}",
-        )
-        return
     else:
         deck.refused_types.add(type_)
-        deck.error(
-            card,
-            card.at("TYPE"),
-            f"unknown element type {numerals.shown(name)}",
-            hint=_known_types(type_),
-        )
-        return
+        if why := why_unsupported(type_):
+            card.refuse(f"elements of type {name} are not supported: {why}", "TYPE")
+        card.refuse(f"unknown element type {numerals.shown(name)}", "TYPE", _known_types(type_))
     if type_ in ELEMENTS and ELEMENTS[type_].note:
         deck.note(f"{type_} {ELEMENTS[type_].note}")
     labels_of_card = []
     for chunk in card.chunks:
         table, lines = _element_rows(deck, card, chunk, size)
         if len(table):
-            block = ElementBlock(
-                card, type_, table[:, 0].copy(), table[:, 1:].copy(), chunk.source.name, lines
-            )
+            labels, nodes = table[:, 0].copy(), table[:, 1:].copy()
+            block = ElementBlock(card, type_, labels, nodes, chunk.source.name, lines)
             deck.scope.elements.append(block)
-            labels_of_card.append(block.labels)
+            labels_of_card.append(labels)
     if card.has("ELSET"):
-        _extend(deck, deck.scope.elsets, card, "ELSET", labels_of_card)
+        _extend(deck.scope.elsets, card, "ELSET", labels_of_card)
 
 
 def _known_types(type_: str) -> str:
@@ -170,19 +157,15 @@ def _element_rows(deck: Deck, card: Card, chunk: Chunk, size: int) -> tuple[Ints
         return values.reshape(-1, size + 1), numbers
     # A line that continues in the next one cannot be read alone: all are read again.
     table, lines = [], []
-    part = Card(card.keyword, card.spelled, {}, card.where, card.text, [chunk])
-    for row in _joined(part.rows(), size + 1):
-        label = _label(deck, card, row, "the element number")
+    for row in _joined(card.rows_of(chunk), size + 1):
+        label = _label(row, "the element number")
         count = len(row) - 1
         if count != size:
-            deck.row_error(
-                card,
-                row,
-                min(size + 1, len(row)),
-                f"{card.value('TYPE')} has {size} nodes, found {count}",
+            row.error(
+                min(size + 1, len(row)), f"{card.value('TYPE')} has {size} nodes, found {count}"
             )
             continue
-        nodes = [deck.node(card, row, i, f"node {i}") for i in range(1, size + 1)]
+        nodes = [deck.node(row, i, f"node {i}") for i in range(1, size + 1)]
         if label is not None and None not in nodes:
             table.append([label, *nodes])
             lines.append(row.where.line)
@@ -193,20 +176,12 @@ def _joined(rows: Iterator[Row], size: int) -> Iterator[Row]:
     """Rows of at least ``size`` fields: a line that ends with a comma continues on the next."""
     open_row: Row | None = None
     for row in rows:
+        last = row.text
         if open_row is not None:
-            row = Row(
-                open_row.where,
-                open_row.text,
-                open_row.fields + row.fields,
-                open_row.columns + [len(open_row.text)] * len(row.fields),
-            )
-            open_row = None
-            more = row.text
-        else:
-            more = row.text
-        if len(row) < size and more.rstrip().endswith(","):
-            open_row = row
-        else:
+            columns = open_row.columns + [len(open_row.text)] * len(row.fields)
+            row = replace(open_row, fields=open_row.fields + row.fields, columns=columns)
+        open_row = row if len(row) < size and last.rstrip().endswith(",") else None
+        if open_row is None:
             yield row
     if open_row is not None:
         yield open_row
@@ -228,55 +203,47 @@ def elset(deck: Deck, card: Card) -> None:
 
 
 def _nodes_of_elset(deck: Deck, card: Card) -> None:
-    name = deck.required(card, "NSET")
-    target = deck.required(card, "ELSET")
-    deck.no_rows(card)
+    name = card.required("NSET")
+    target = card.required("ELSET")
+    card.no_rows()
     if name and target:
         found = deck.scope.nsets.setdefault(key(name), NamedSet(name, card.where))
         found.entries.append(Entry(card.at("ELSET"), int_array(()), "elset:" + target))
 
 
 def _set(deck: Deck, card: Card, table: dict[str, NamedSet], parameter: str) -> None:
-    name = deck.required(card, parameter)
+    name, instance, prefix = card.required(parameter), card.value("INSTANCE"), ""
     if not name:
         return
-    prefix = ""
     if card.has("INSTANCE"):
-        prefix = card.value("INSTANCE") + "."
-        if key(card.value("INSTANCE")) not in deck.instances:
-            deck.error(
-                card,
-                card.at("INSTANCE"),
-                f"no instance named {card.value('INSTANCE')}",
-                hint=nearest(card.value("INSTANCE"), deck.instances),
-            )
-    found = table.setdefault(key(name), NamedSet(name, card.where))
+        prefix = instance + "."
+        if key(instance) not in deck.instances:
+            hint = nearest(instance, deck.instances)
+            card.error(f"no instance named {instance}", "INSTANCE", hint)
+    found, of = table.setdefault(key(name), NamedSet(name, card.where)), prefix and "@" + prefix
     if card.has("GENERATE"):
         for row in card.rows():
-            labels = _generated(deck, card, row)
-            if labels is not None:
-                found.entries.append(Entry(row.where, labels, prefix and "@" + prefix))
+            with suppress(Refused):
+                found.entries.append(Entry(row.where, _generated(row), of))
         return
-    for row in _set_rows(card, found, prefix and "@" + prefix):
+    for row in _set_rows(card, found, of):
         run: list[int] = []
         for index, text in enumerate(row.fields):
             if not text:
                 continue
             if numerals.is_integer(text):
-                label = _label(deck, card, row, "the number", index)
+                label = _label(row, "the number", index)
                 if label is not None:
                     run.append(label)
             elif numerals.is_number(text):
-                deck.row_error(
-                    card, row, index, f"expected a whole number or a set name, found {text!r}"
-                )
+                row.error(index, f"expected a whole number or a set name, found {text!r}")
             else:
                 if run:
-                    found.entries.append(Entry(row.where, int_array(run), prefix and "@" + prefix))
+                    found.entries.append(Entry(row.where, int_array(run), of))
                     run = []
                 found.entries.append(Entry(row.at(index), int_array(()), prefix + text))
         if run:
-            found.entries.append(Entry(row.where, int_array(run), prefix and "@" + prefix))
+            found.entries.append(Entry(row.where, int_array(run), of))
 
 
 def _set_rows(card: Card, found: NamedSet, name: str) -> Iterator[Row]:
@@ -288,87 +255,71 @@ def _set_rows(card: Card, found: NamedSet, name: str) -> Iterator[Row]:
                 where = Location(chunk.source.name, chunk.line)
                 found.entries.append(Entry(where, labels, name))
                 continue
-        yield from Card(card.keyword, card.spelled, {}, card.where, card.text, [chunk]).rows()
+        yield from card.rows_of(chunk)
 
 
-def _generated(deck: Deck, card: Card, row: Row) -> Ints | None:
-    deck.extra_fields(card, row, 3)
-    first = deck.integer(card, row, 0, "the first number")
-    last = deck.integer(card, row, 1, "the last number")
-    by = deck.integer(card, row, 2, "the increment", 1)
-    if first is None or last is None or by is None:
-        return None
+def _generated(row: Row) -> Ints:
+    row.at_most(3)
+    first, last = row.integer(0, "the first number"), row.integer(1, "the last number")
+    first, last, by = complete([first, last, row.integer(2, "the increment", 1)])
     if by <= 0 or last < first or first < 1:
-        deck.row_error(card, row, 0, "expected first <= last, both >= 1, and increment >= 1")
-        return None
+        row.refuse(0, "expected first <= last, both >= 1, and increment >= 1")
     if (last - first) % by:
-        deck.row_error(card, row, 1, f"{last} is not reached from {first} in steps of {by}")
-        return None
+        row.refuse(1, f"{last} is not reached from {first} in steps of {by}")
     if (last - first) // by >= MAX_GENERATE:
-        deck.row_error(
-            card, row, 1, f"{(last - first) // by + 1} entries; at most {MAX_GENERATE} are taken"
-        )
-        return None
+        row.refuse(1, f"{(last - first) // by + 1} entries; at most {MAX_GENERATE} are taken")
     return np.arange(first, last + 1, by, dtype=np.int64)
 
 
 def surface(deck: Deck, card: Card) -> None:
     """``*SURFACE, NAME=[, TYPE=ELEMENT|NODE|SEGMENTS]``: element or set, face; or nodes."""
-    name = deck.required(card, "NAME")
+    name = card.required("NAME")
     if not name:
         return
-    kind = deck.choice(card, "TYPE", ("ELEMENT", "NODE", "SEGMENTS"), "ELEMENT")
+    kind = card.choice("TYPE", ("ELEMENT", "NODE", "SEGMENTS"), "ELEMENT")
     found = deck.scope.surfaces.get(key(name))
     if found is not None:
-        deck.error(
-            card,
-            card.at("NAME"),
-            f"surface {name} is already defined in {found.card.where}",
-            hint="put all its lines under one card",
-        )
-        return
+        text = f"surface {name} is already defined in {found.card.where}"
+        card.refuse(text, "NAME", hint="put all its lines under one card")
     found = deck.scope.surfaces[key(name)] = Surface(name, card, kind == "NODE")
     if kind == "SEGMENTS":
-        profile(deck, card, found)
+        profile(card, found)
         return
     if card.has("COMBINE"):
-        _combination(deck, card, found)
+        _combination(card, found)
         return
     for row in card.rows():
-        deck.extra_fields(card, row, 2)
-        if not row.get(0):
-            deck.row_error(card, row, 0, "an element number or a set is missing")
-            continue
-        found.rows.append(SurfaceRow(row.where, row.text, row.get(0), key(row.get(1))))
+        row.at_most(2)
+        if row.get(0):
+            found.rows.append(SurfaceRow(row.where, row.text, row.get(0), key(row.get(1))))
+        else:
+            row.error(0, "an element number or a set is missing")
     if not found.rows:
         deck.note(f"{card.where}: surface {name} is empty")
 
 
-def _combination(deck: Deck, card: Card, found: Surface) -> None:
+def _combination(card: Card, found: Surface) -> None:
     """``COMBINE=``: names of surfaces, of which a difference takes two."""
-    found.combine = deck.choice(card, "COMBINE", ("UNION", "DIFFERENCE", "INTERSECTION"), "UNION")
+    found.combine = card.choice("COMBINE", ("UNION", "DIFFERENCE", "INTERSECTION"), "UNION")
     for row in card.rows():
         for index in range(len(row)):
             if row.get(index):
                 found.rows.append(SurfaceRow(row.at(index), row.text, row.get(index), ""))
     if len(found.rows) < 2 or (found.combine == "DIFFERENCE" and len(found.rows) > 2):
-        deck.error(card, card.where, "the names of two surfaces are expected")
+        card.error("the names of two surfaces are expected")
 
 
-def _label(deck: Deck, card: Card, row: Row, what: str, index: int = 0) -> int | None:
-    label = deck.integer(card, row, index, what)
+def _label(row: Row, what: str, index: int = 0) -> int | None:
+    label = row.integer(index, what)
     if label is not None and label < 1:
-        deck.row_error(card, row, index, f"{what} must be >= 1, not {label}")
+        row.error(index, f"{what} must be >= 1, not {label}")
         return None
     return label
 
 
-def _extend(
-    deck: Deck, table: dict[str, NamedSet], card: Card, parameter: str, labels: list[Ints]
-) -> None:
+def _extend(table: dict[str, NamedSet], card: Card, parameter: str, labels: list[Ints]) -> None:
     name = card.value(parameter)
     if not name:
-        deck.error(card, card.at(parameter), f"{parameter}= needs a name")
-        return
+        card.refuse(f"{parameter}= needs a name", parameter)
     found = table.setdefault(key(name), NamedSet(name, card.where))
     found.entries.extend(Entry(Location(card.where.file, card.where.line), part) for part in labels)

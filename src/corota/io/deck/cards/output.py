@@ -6,8 +6,9 @@ from __future__ import annotations
 from typing import Literal, cast
 
 from corota.io.deck import numerals
-from corota.io.deck.deck import Deck, nearest
-from corota.io.deck.lexer import Card, key
+from corota.io.deck.card import Card, key, nearest
+from corota.io.deck.deck import Deck
+from corota.io.deck.drafts import StepDraft
 from corota.model.steps import Output
 from corota.results.table import requests
 
@@ -44,14 +45,13 @@ def restart(deck: Deck, card: Card) -> None:
 
     ``READ`` is handled before; steps of the earlier deck end with it.
     """
-    deck.no_rows(card)
+    card.no_rows()
     if card.has("READ") and deck.step is not None:
-        deck.error(card, card.at("READ"), "READ belongs before the first *STEP")
-        return
+        card.refuse("READ belongs before the first *STEP", "READ")
     if card.has("READ") and not card.has("WRITE"):
         deck.restart = 0
         return
-    deck.restart = deck.parameter_integer(card, "FREQUENCY", 1, 0)
+    deck.restart = card.integer("FREQUENCY", 1, 0)
     if deck.step is not None:
         deck.step.restart = deck.restart
 
@@ -83,14 +83,13 @@ def contact_print(deck: Deck, card: Card) -> None:
     """``*CONTACT PRINT[, SLAVE=, MASTER=]``: tables of contact in ``<job>.dat``."""
     slave, master = card.value("SLAVE"), card.value("MASTER")
     if bool(slave) != bool(master):
-        deck.error(card, card.where, "SLAVE= and MASTER= belong together")
-        return
+        card.refuse("SLAVE= and MASTER= belong together")
     _request(deck, card, "contact print", f"{slave}-{master}" if slave else "")
 
 
 def section_print(deck: Deck, card: Card) -> None:
     """``*SECTION PRINT, SURFACE=[, NAME=]``: force and moment on a surface in ``<job>.dat``."""
-    surface = deck.required(card, "SURFACE")
+    surface = card.required("SURFACE")
     if surface:
         _request(deck, card, "section print", surface)
 
@@ -102,63 +101,46 @@ def contact_file(deck: Deck, card: Card) -> None:
 
 def output(deck: Deck, card: Card) -> None:
     """``*OUTPUT``: frequency of the ``*... OUTPUT`` cards below it."""
-    if deck.step is None:
-        deck.error(card, card.where, "the card belongs inside a step")
-        return
-    deck.step.frequency = _frequency(deck, card)
+    now = _open_step(deck, card)
+    now.frequency = _frequency(now, card)
     if key(card.value("VARIABLE")) in ("PRESELECT", "ALL"):
-        into = deck.step.outputs
-        into.append(Output("node file", ("U", "RF"), frequency=deck.step.frequency))
-        into.append(Output("el file", ("S", "E"), frequency=deck.step.frequency))
-    deck.no_rows(card)
+        now.outputs.append(Output("node file", ("U", "RF"), frequency=now.frequency))
+        now.outputs.append(Output("el file", ("S", "E"), frequency=now.frequency))
+    card.no_rows()
 
 
-def ignored(deck: Deck, card: Card) -> None:
-    """Read a card that has no effect here."""
-    deck.note(f"{card.where}: {card.spelled} is ignored")
+def _open_step(deck: Deck, card: Card) -> StepDraft:
+    if deck.step is None:
+        card.refuse("the card belongs inside a step")
+    return deck.step
 
 
 def _request(deck: Deck, card: Card, kind: Kind, where: str) -> None:
-    if deck.step is None:
-        deck.error(card, card.where, "the card belongs inside a step")
-        return
-    place = kind.split()[0]
-    known = written(place)
+    now = _open_step(deck, card)
+    known = written(kind.split()[0])
     requested: list[str] = []
     left_out: dict[str, str] = {}
-    for row in card.rows():
-        for text in row.fields:
-            name = key(text)
-            name = ALIASES.get(name, name)
-            if not name:
-                continue
-            if name not in known and name.rstrip("0123456789") in known:
-                name = name.rstrip("0123456789")  # a component: all of them are written
-            if name in known:
-                if name not in requested:
-                    requested.append(name)
-            else:
-                left_out.setdefault(name, numerals.clipped(name, 30))
+    for text in (text for row in card.rows() for text in row.fields):
+        name = ALIASES.get(key(text), key(text))
+        if name not in known and name.rstrip("0123456789") in known:
+            name = name.rstrip("0123456789")  # a component: all of them are written
+        if name and name not in known:
+            left_out.setdefault(name, numerals.clipped(name, 30))
+        elif name and name not in requested:
+            requested.append(name)
     if left_out:
         shown = ", ".join(left_out.values())
-        deck.note(
-            f"{card.where}: {card.spelled}: {shown} is not written; there are {', '.join(known)}"
-        )
-    totals = deck.choice(card, "TOTALS", ("NO", "YES", "ONLY"), "NO").lower()
-    frequency = _frequency(deck, card)
+        card.note(f"{shown} is not written; there are {', '.join(known)}")
+    totals = card.choice("TOTALS", ("NO", "YES", "ONLY"), "NO").lower()
+    frequency = _frequency(now, card)
     points = card.value("TIMEPOINTS")
     if card.has("TIMEPOINTS") and key(points) not in deck.time_points:
-        deck.error(
-            card,
-            card.at("TIMEPOINTS"),
-            f"no *TIME POINTS named {points!r} before this card",
-            hint=nearest(points, deck.time_points),
-        )
-        return
+        text = f"no *TIME POINTS named {points!r} before this card"
+        card.refuse(text, "TIMEPOINTS", nearest(points, deck.time_points))
     if frequency == 0:
         deck.note(f"{card.where}: {card.spelled} with FREQUENCY=0 requests nothing")
     elif requested:
-        deck.step.outputs.append(
+        now.outputs.append(
             Output(
                 kind,
                 tuple(requested),
@@ -167,18 +149,14 @@ def _request(deck: Deck, card: Card, kind: Kind, where: str) -> None:
                 cast("Literal['no', 'yes', 'only']", totals),
                 key(points),
                 card.where,
-                kind == "node print" and deck.choice(card, "GLOBAL", ("NO", "YES"), "NO") == "YES",
+                kind == "node print" and card.choice("GLOBAL", ("NO", "YES"), "NO") == "YES",
                 card.has("FREQUENCY") or card.has("FREQUENCYF"),
             )
         )
 
 
-def _frequency(deck: Deck, card: Card) -> int:
-    under = deck.step is not None and card.keyword in (
-        "NODEOUTPUT",
-        "ELEMENTOUTPUT",
-        "CONTACTOUTPUT",
-    )
-    default = deck.step.frequency if under and deck.step is not None else 1
+def _frequency(now: StepDraft, card: Card) -> int:
+    """Increments between outputs; those of ``*OUTPUT`` for the cards below it."""
+    under = card.keyword in ("NODEOUTPUT", "ELEMENTOUTPUT", "CONTACTOUTPUT")
     name = "FREQUENCYF" if card.has("FREQUENCYF") else "FREQUENCY"
-    return deck.parameter_integer(card, name, default, 0)
+    return card.integer(name, now.frequency if under else 1, 0)

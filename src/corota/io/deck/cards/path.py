@@ -5,10 +5,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from corota.errors import InputError
-from corota.io.deck.cards import step as inp_cards_step
-from corota.io.deck.cards.step import keeps_preload, open_procedure
-from corota.io.deck.lexer import Card, key
+from corota.io.deck.card import Card, complete, key
+from corota.io.deck.cards.step import keeps_preload, open_procedure, step_times
+from corota.io.deck.drafts import PLANAR, StepDraft
 from corota.model.paths import ArcLength, Label
 from corota.model.steps import Buckle
 
@@ -22,17 +21,19 @@ _WITHOUT_EFFECT = ("LINESEARCH", "CONTACT", "CONSTRAINTS")
 
 
 def static(deck: Deck, card: Card) -> None:
-    """``*STATIC``, or ``*STATIC, RIKS``: the path by arc length."""
-    if not card.has("RIKS"):
-        inp_cards_step.static(deck, card)
+    """``*STATIC[, DIRECT]``: first increment, period, smallest, largest; ``RIKS``: arc length."""
+    now = open_procedure(deck, card)
+    now.direct = card.has("DIRECT")
+    if card.has("RIKS"):
+        _riks(card, now)
     else:
-        _riks(deck, card)
-    if card.has("STABILIZE") and deck.step is not None and deck.step.procedure is card:
-        deck.note(
-            f"{card.where}: {card.spelled}: no artificial damping is added; beyond a limit point "
+        step_times(card, now)
+    if card.has("STABILIZE"):
+        card.note(
+            "no artificial damping is added; beyond a limit point "
             "the path of equilibrium is followed, through unstable states, to the whole load"
         )
-        deck.step.options = {"ramp": deck.step.ramp, "at_limit": "follow", **deck.step.options}
+        now.options = {"ramp": now.ramp, "at_limit": "follow", **now.options}
     _take_controls(deck)
 
 
@@ -44,53 +45,33 @@ def _take_controls(deck: Deck) -> None:
         now.options = {"ramp": now.ramp, **now.options, **deck.controls}
 
 
-def _riks(deck: Deck, card: Card) -> None:
+def _riks(card: Card, now: StepDraft) -> None:
     """First arc, its scale, smallest, largest; ends: load factor; node, dof, displacement."""
-    now = open_procedure(deck, card)
-    if now is None:
-        return
-    now.direct = card.has("DIRECT")
     rows = list(card.rows())
     if len(rows) > 1:
-        deck.row_error(card, rows[1], 0, "one data line is expected")
-        return
+        rows[1].refuse(0, "one data line is expected")
     numbers: list[float] = [0.0] * 5
     end: tuple[Label, int, float] | None = None
     if rows:
         row = rows[0]
-        deck.extra_fields(card, row, 8)
-        names = (
-            "the first arc",
-            "the scale of arcs",
-            "the smallest arc",
-            "the largest arc",
-            "the load factor at the end",
-        )
+        row.at_most(8)
+        names = [f"the {what}" for what in ("first arc", "scale of arcs", "smallest arc")]
+        names += ["the largest arc", "the load factor at the end"]
         for index, name in enumerate(names):
-            value = deck.real(card, row, index, name, 0.0)
-            if value is None:
-                return
-            if value < 0.0 and index < 4:
-                deck.row_error(card, row, index, f"{name} must be > 0, not {value:g}")
-                return
-            numbers[index] = value
+            numbers[index] = row.number(index, name, 0.0)
+            if numbers[index] < 0.0 and index < 4:
+                row.refuse(index, f"{name} must be > 0, not {numbers[index]:g}")
         if row.get(5):
-            node = deck.integer(card, row, 5, "the node that ends the path")
-            dof = deck.integer(card, row, 6, "the degree of freedom")
-            value = deck.real(card, row, 7, "the displacement at the end")
-            if node is None or dof is None or value is None:
-                return
-            if dof not in (1, 2, 6):
-                deck.row_error(card, row, 6, f"expected degree of freedom 1, 2 or 6, found {dof}")
-                return
-            end = (Label(node), {1: 0, 2: 1, 6: 2}[dof], value)
+            label = row.integer(5, "the node that ends the path")
+            way = row.integer(6, "the degree of freedom")
+            value = row.number(7, "the displacement at the end")
+            node, dof = complete([label, way])
+            if dof not in PLANAR:
+                row.refuse(6, f"expected degree of freedom 1, 2 or 6, found {dof}")
+            end = (Label(node), PLANAR[dof], value)
     first, scale, least, most, factor = numbers
     scale = scale or 1.0
-    try:
-        path = ArcLength(factor=factor or None, displacement=end, increments=now.max_increments)
-    except InputError as error:
-        deck.error(card, card.where, error.message)
-        return
+    path = ArcLength(factor=factor or None, displacement=end, increments=now.max_increments)
     now.options = {"ramp": now.ramp, "path": path}
     # Arcs are measured in load factors of the linear structure, the first being its share.
     now.times = (first / scale, 1.0, least / scale, most / scale)
@@ -98,21 +79,13 @@ def _riks(deck: Deck, card: Card) -> None:
 
 def buckle(deck: Deck, card: Card) -> None:
     """``*BUCKLE``: the number of factors; other entries control other solvers."""
-    now = open_procedure(deck, card)
-    if now is None:
-        return
-    rows = list(card.rows())
-    count: int | None = 1
+    now, rows, count = open_procedure(deck, card), list(card.rows()), 1
     if rows:
-        count = deck.integer(card, rows[0], 0, "the number of buckling factors")
-        if count is None:
-            return
+        count = rows[0].whole(0, "the number of buckling factors")
         if count < 1:
-            deck.row_error(card, rows[0], 0, f"at least one factor is needed, not {count}")
-            return
+            rows[0].refuse(0, f"at least one factor is needed, not {count}")
         if len(rows) > 1:
-            deck.row_error(card, rows[1], 0, "one data line is expected")
-            return
+            rows[1].refuse(0, "one data line is expected")
     preload = keeps_preload(deck, card, now)
     now.make = Buckle
     now.options = {"modes": count, "preload": preload, "dead_loads": True}
@@ -124,7 +97,6 @@ def controls(deck: Deck, card: Card) -> None:
         deck.controls.clear()
         return
     kind = key(card.value("PARAMETERS"))
-    rows = list(card.rows())
     if not kind and (card.has("ANALYSIS") or card.has("TYPE")):
         deck.note(f"{card.where}: *CONTROLS has no effect: increments adapt automatically")
         return
@@ -133,29 +105,18 @@ def controls(deck: Deck, card: Card) -> None:
         return
     if kind not in _CONTROLS:
         known = "FIELD, TIME INCREMENTATION, LINE SEARCH, CONTACT, CONSTRAINTS"
-        deck.error(card, card.where, f"PARAMETERS must be one of {known}", hint="or write RESET")
-        return
+        card.refuse(f"PARAMETERS must be one of {known}", hint="or write RESET")
     index, option = _CONTROLS[kind]
-    if rows and rows[0].get(index):
-        if kind == "FIELD":
-            value = deck.real(card, rows[0], index, "the tolerance")
-            if value is None:
-                return
-            if value <= 0.0:
-                deck.row_error(card, rows[0], index, f"the tolerance must be > 0, not {value:g}")
-                return
-            # Largest, not mean, forces are the scale here: a looser one would cost accuracy.
-            deck.controls[option] = min(value, 1e-9)
-        else:
-            count = deck.integer(card, rows[0], index, "the number of iterations")
-            if count is None:
-                return
-            if count < 1:
-                deck.row_error(
-                    card, rows[0], index, f"at least one iteration is needed, not {count}"
-                )
-                return
-            deck.controls[option] = count
+    row = next(card.rows(), None)
+    if row is not None and row.get(index) and kind == "FIELD":
+        (value,) = row.positive(("the tolerance",), index)
+        # Largest, not mean, forces are the scale here: a looser one would cost accuracy.
+        deck.controls[option] = min(value, 1e-9)
+    elif row is not None and row.get(index):
+        count = row.whole(index, "the number of iterations")
+        if count < 1:
+            row.refuse(index, f"at least one iteration is needed, not {count}")
+        deck.controls[option] = count
     _take_controls(deck)
     deck.notes.append(
         f"{card.where}: of *CONTROLS only a residual tolerance tighter than 1e-9 and the largest "

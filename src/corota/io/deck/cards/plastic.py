@@ -18,8 +18,8 @@ from corota.model.plasticity import Mises, Voce
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from corota.io.deck.card import Card
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
 
 #: Back-stresses that one material may have.
 MOST_BACK_STRESSES = 20
@@ -28,85 +28,62 @@ MOST_BACK_STRESSES = 20
 def plastic(deck: Deck, card: Card) -> None:
     """``*PLASTIC[, HARDENING=][, RATE=]``: yield stress against plastic strain, or parameters."""
     found = open_material(deck, card)
-    if found is None:
-        return
     kinds = ("ISOTROPIC", "KINEMATIC", "COMBINED", "JOHNSONCOOK")
-    kind = deck.choice(card, "HARDENING", kinds, "ISOTROPIC")
+    kind = card.choice("HARDENING", kinds, "ISOTROPIC")
     if kind == "JOHNSONCOOK":
         johnson_cook(deck, card)
         return
     if card.has("RATE"):
-        _curve_of_rate(deck, card, found, kind)
+        _curve_of_rate(card, found, kind)
         return
-    data = deck.choice(card, "DATATYPE", ("HALFCYCLE", "PARAMETERS"), "HALFCYCLE")
+    data = card.choice("DATATYPE", ("HALFCYCLE", "PARAMETERS"), "HALFCYCLE")
     if data == "PARAMETERS" and kind != "COMBINED":
-        deck.error(card, card.at("DATATYPE"), "DATA TYPE=PARAMETERS needs HARDENING=COMBINED")
-        return
+        card.refuse("DATA TYPE=PARAMETERS needs HARDENING=COMBINED", "DATATYPE")
     if found.plastic is not None and found.plastic.card is not None:
-        deck.error(card, card.where, f"material {found.name} already has a *PLASTIC")
-        return
+        card.refuse(f"material {found.name} already has a *PLASTIC")
     draft = found.plastic = found.plastic or PlasticDraft()
-    draft.card, draft.kind = card, kind
-    if data == "PARAMETERS":
-        draft.ready = _parameters(deck, card, draft)
-        return
-    table = _table(deck, card)
-    draft.ready = table is not None
-    if table is None:
-        return
-    draft.curves = table
-    long = next((curve for curve in table if len(curve.points) > 2), None)
+    draft.card, draft.kind, draft.ready = card, kind, False
+    draft.curves = _parameters(card) if data == "PARAMETERS" else _table(card)
+    long = next((curve for curve in draft.curves if len(curve.points) > 2), None)
     if kind != "ISOTROPIC" and long is not None:
         row = next(row for row in card.rows() if row.where == long.rows[2])
-        deck.row_error(
-            card,
-            row,
+        row.refuse(
             0,
             "kinematic hardening from a table is linear: two rows at a temperature; for a curve "
             "give HARDENING=COMBINED, DATA TYPE=PARAMETERS with several back-stresses",
         )
-        draft.ready = False
+    draft.ready = True
 
 
-def _curve_of_rate(deck: Deck, card: Card, found: MaterialDraft, kind: str) -> None:
+def _curve_of_rate(card: Card, found: MaterialDraft, kind: str) -> None:
     """One of several curves, each at a rate of the plastic strain."""
-    rate = deck.parameter_number(card, "RATE", 0.0, 0.0)
+    rate = card.number("RATE", 0.0, 0.0)
     draft = found.plastic = found.plastic or PlasticDraft()
     if kind != "ISOTROPIC" or (draft.card is not None and not draft.rated):
-        deck.error(card, card.at("RATE"), "RATE= belongs to isotropic tables, in every *PLASTIC")
-        return
-    table = _table(deck, card)
-    draft.ready = draft.ready and table is not None
-    if table is None:
-        return
+        card.refuse("RATE= belongs to isotropic tables, in every *PLASTIC", "RATE")
+    ready, draft.ready = draft.ready, False
+    table = _table(card)
     if len(table) > 1:
-        deck.error(card, card.at("RATE"), "curves by rate take one temperature")
-        draft.ready = False
-        return
+        card.refuse("curves by rate take one temperature", "RATE")
     if any(other == rate for other, _ in draft.rated):
-        deck.error(card, card.at("RATE"), f"the rate {rate:g} is given twice")
-        draft.ready = False
-        return
+        card.refuse(f"the rate {rate:g} is given twice", "RATE")
     if draft.card is None or rate < min(other for other, _ in draft.rated):
         # The curve at the lowest rate is that below it too.
         draft.card, draft.curves = card, table
     draft.rated.append((rate, table[0].points))
+    draft.ready = ready
 
 
-def _parameters(deck: Deck, card: Card, draft: PlasticDraft) -> bool:
+def _parameters(card: Card) -> list[CurveDraft]:
     """Yield stress, then C and gamma of each back-stress, up to eight numbers a line."""
     count = 1
     if card.has("NUMBERBACKSTRESSES"):
         text = card.value("NUMBERBACKSTRESSES")
         count = int(text) if numerals.is_integer(text) and len(text) < 4 else 0
         if not 1 <= count <= MOST_BACK_STRESSES:
-            deck.error(
-                card,
-                card.at("NUMBERBACKSTRESSES"),
-                f"NUMBER BACKSTRESSES must be a whole number from 1 to {MOST_BACK_STRESSES}, "
-                f"not {numerals.shown(text)}",
-            )
-            return False
+            range_ = f"must be a whole number from 1 to {MOST_BACK_STRESSES}"
+            text = f"NUMBER BACKSTRESSES {range_}, not {numerals.shown(text)}"
+            card.refuse(text, "NUMBERBACKSTRESSES")
     rows = list(card.rows())
     wanted = 1 + 2 * count
     names = ["the yield stress"]
@@ -115,116 +92,74 @@ def _parameters(deck: Deck, card: Card, draft: PlasticDraft) -> bool:
     # Behind the last number stands the temperature, at most eight on a line.
     n_rows = -(-wanted // 8) if len(rows) <= -(-wanted // 8) else -(-(wanted + 1) // 8)
     if not rows or len(rows) % n_rows:
-        deck.error(
-            card,
-            card.where,
+        card.refuse(
             f"{wanted} numbers take {n_rows} data lines for each temperature, not {len(rows)}: "
-            f"{', '.join(names)}, the temperature",
+            f"{', '.join(names)}, the temperature"
         )
-        return False
+    curves = []
     for first in range(0, len(rows), n_rows):
         mine = rows[first : first + n_rows]
-        values: list[float] = []
-        for index, name in enumerate(names):
-            row_number, column = divmod(index, 8)
-            value = deck.real(card, mine[row_number], column, name)
-            if value is None:
-                return False
-            values.append(value)
+        values = [mine[i // 8].number(i % 8, name) for i, name in enumerate(names)]
         row_number, column = divmod(wanted, 8)
-        at: float | None = 0.0
-        if row_number < n_rows:
-            at = deck.real(card, mine[row_number], column, "the temperature", 0.0)
-        if at is None:
-            return False
+        at = mine[row_number].number(column, "the temperature", 0.0) if row_number < n_rows else 0.0
         back = list(zip(values[1::2], values[2::2], strict=True))
-        draft.curves.append(CurveDraft(at, [(values[0], 0.0)], [mine[0].where], back))
-    return _distinct(deck, card, draft.curves)
+        curves.append(CurveDraft(at, [(values[0], 0.0)], [mine[0].where], back))
+    return _distinct(card, curves)
 
 
-def _distinct(deck: Deck, card: Card, curves: list[CurveDraft]) -> bool:
-    """Whether each temperature has one curve; reports an error otherwise."""
+def _distinct(card: Card, curves: list[CurveDraft]) -> list[CurveDraft]:
+    """The curves, if each temperature has one."""
     found = sorted(curve.temperature for curve in curves)
     twice = next((a for a, b in pairwise(found) if a == b), None)
-    if twice is None:
-        return True
-    deck.error(card, card.where, f"the temperature {twice:g} is given twice")
-    return False
+    if twice is not None:
+        card.refuse(f"the temperature {twice:g} is given twice")
+    return curves
 
 
-def _table(deck: Deck, card: Card) -> list[CurveDraft] | None:
+def _table(card: Card) -> list[CurveDraft]:
     """Rows of stress, plastic strain (default 0), temperature; a curve at each temperature."""
-    rows = list(card.rows())
-    if not rows:
-        deck.error(card, card.where, "a data line is missing: yield stress, plastic strain")
-        return None
+    rows = card.lines("yield stress, plastic strain")
+    names = ("the yield stress", "the plastic strain", "the temperature")
     curves: list[CurveDraft] = []
     for row in rows:
-        stress = deck.real(card, row, 0, "the yield stress")
-        strain = deck.real(card, row, 1, "the plastic strain", 0.0)
-        at = deck.real(card, row, 2, "the temperature", 0.0)
-        if stress is None or strain is None or at is None:
-            return None
-        deck.extra_fields(card, row, 3)
+        stress, strain, at = row.reals(names, 0.0, required=1)
+        row.at_most(3)
         if not curves or curves[-1].temperature != at:
             curves.append(CurveDraft(at, [], []))
         curves[-1].points.append((stress, strain))
         curves[-1].rows.append(row.where)
-    if not _distinct(deck, card, curves):
-        return None
+    _distinct(card, curves)
     if len(curves) == 1 and rows[0].get(2):
         note = f"the temperature {rows[0].get(2)} in *{card.keyword} is ignored"
-        deck.note(f"{rows[0].where}: {note}")
+        card.deck.note(f"{rows[0].where}: {note}")
     return curves
 
 
 def potential(deck: Deck, card: Card) -> None:
     """``*POTENTIAL``: R11, R22, R33, R12, R13, R23; the last two are out of the plane."""
     found = open_material(deck, card)
-    rows = list(card.rows())
-    if found is None:
-        return
-    if len(rows) != 1:
-        deck.error(card, card.where, "one data line is expected: R11, R22, R33, R12, R13, R23")
-        return
-    values = []
-    for index, name in enumerate(("R11", "R22", "R33", "R12")):
-        value = deck.real(card, rows[0], index, name)
-        if value is None:
-            return
-        values.append(value)
-    deck.extra_fields(card, rows[0], 6)
+    row = card.one_line("R11, R22, R33, R12, R13, R23")
+    values = row.reals(("R11", "R22", "R33", "R12"))
+    row.at_most(6)
     found.potential, found.potential_card = tuple(values), card
 
 
 def cyclic_hardening(deck: Deck, card: Card) -> None:
     """``*CYCLIC HARDENING[, PARAMETERS]``: size of the yield surface against plastic strain."""
     found = open_material(deck, card)
-    if found is None:
-        return
     draft = found.plastic = found.plastic or PlasticDraft()
     if draft.cyclic_card is not None:
-        deck.error(card, card.where, f"material {found.name} already has a *CYCLIC HARDENING")
-        return
+        card.refuse(f"material {found.name} already has a *CYCLIC HARDENING")
     draft.cyclic_card = card
     if not card.has("PARAMETERS"):
-        draft.cyclic = _table(deck, card)
+        draft.cyclic = _table(card)
         return
-    rows = list(card.rows())
-    if not rows:
-        deck.error(card, card.where, "a data line is missing: yield stress, Q, b")
-        return
-    curves = []
-    for row in rows:
-        values = [deck.real(card, row, i, n) for i, n in enumerate(("the yield stress", "Q", "b"))]
-        at = deck.real(card, row, 3, "the temperature", 0.0)
-        deck.extra_fields(card, row, 4)
-        if None in values or at is None:
-            return
-        initial, q, b = (float(v or 0.0) for v in values)
+    curves, names = [], ("the yield stress", "Q", "b", "the temperature")
+    for row in card.lines("yield stress, Q, b"):
+        initial, q, b, at = row.reals(names, 0.0, required=3)
+        row.at_most(4)
         curves.append(CurveDraft(at, [(initial, 0.0)], [row.where], voce=(q, b)))
-    if _distinct(deck, card, curves):
-        draft.cyclic = curves
+    draft.cyclic = _distinct(card, curves)
 
 
 def build_mises(

@@ -6,9 +6,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from corota.errors import InputError
+from corota.io.deck.card import Card, key
 from corota.io.deck.cards.material import open_material
 from corota.io.deck.cards.step import open_procedure, step_times
-from corota.io.deck.lexer import Card, key
 from corota.model.johnson_cook import JohnsonCook
 from corota.model.rates import CowperSymonds, Norton, YieldRatio
 from corota.model.steps import Visco
@@ -28,88 +28,58 @@ CREEP_LAWS = {"NORTON": "time", "TIME": "time", "STRAIN": "strain"}
 JOHNSON_COOK = ("A", "B", "n", "m", "the melting temperature", "the transition temperature")
 
 
-def _rows(deck: Deck, card: Card, names: Sequence[str], required: int) -> list[list[float]] | None:
-    """Numbers of all data lines, the last of them optional; ``None`` after an error."""
+def _rows(card: Card, names: Sequence[str], required: int) -> list[list[float]]:
+    """Numbers of all data lines, the last of them optional."""
     found = []
-    for row in card.rows():
-        values = []
-        for index, name in enumerate(names):
-            value = deck.real(card, row, index, name, None if index < required else 0.0)
-            if value is None:
-                return None
-            values.append(value)
-        deck.extra_fields(card, row, len(names))
-        found.append(values)
-    if not found:
-        deck.error(card, card.where, f"a data line is missing: {', '.join(names)}")
-        return None
+    for row in card.lines(", ".join(names)):
+        found.append(row.reals(names, 0.0, required=required))
+        row.at_most(len(names))
     return found
 
 
-def _one(deck: Deck, card: Card, names: Sequence[str], required: int) -> list[float] | None:
+def _one(card: Card, names: Sequence[str], required: int) -> list[float]:
     """Numbers of the one data line."""
-    rows = _rows(deck, card, names, required)
-    if rows is not None and len(rows) > 1:
-        deck.row_error(card, list(card.rows())[1], 0, "one data line is expected")
-        return None
-    return rows[0] if rows else None
+    rows = _rows(card, names, required)
+    if len(rows) > 1:
+        list(card.rows())[1].refuse(0, "one data line is expected")
+    return rows[0]
 
 
 def _set_rate(deck: Deck, card: Card, make: Callable[[], Any]) -> None:
     """Give the open material a rate, which it may have once."""
     found = open_material(deck, card)
-    if found is None:
-        return
     if found.rate_card is not None:
-        deck.error(
-            card, card.where, f"material {found.name} already has a {found.rate_card.spelled}"
-        )
-        return
+        card.refuse(f"material {found.name} already has a {found.rate_card.spelled}")
     found.rate_card = card
-    try:
-        found.rate = make()
-    except InputError as error:
-        deck.error(card, card.where, error.message)
+    found.rate = make()
 
 
 def rate_dependent(deck: Deck, card: Card) -> None:
     """``*RATE DEPENDENT[, TYPE=]``: D and n; ratios and rates; or C and a rate."""
-    kind = deck.choice(card, "TYPE", RATE_TYPES, "POWERLAW")
+    kind = card.choice("TYPE", RATE_TYPES, "POWERLAW")
     if kind == "YIELDRATIO":
-        rows = _rows(deck, card, ("the ratio", "the rate"), 1)
-        if rows is not None:
-            _set_rate(deck, card, lambda: YieldRatio([(r, p) for r, p in rows]))
+        rows = _rows(card, ("the ratio", "the rate"), 1)
+        _set_rate(deck, card, lambda: YieldRatio([(r, p) for r, p in rows]))
     elif kind == "JOHNSONCOOK":
-        numbers = _one(deck, card, ("C", "the rate"), 2)
-        if numbers is not None:
-            pair = (numbers[0], numbers[1])
-            _set_rate(deck, card, lambda: pair)
+        pair = tuple(_one(card, ("C", "the rate"), 2))
+        _set_rate(deck, card, lambda: pair)
     else:
-        numbers = _one(deck, card, ("D", "n", "the temperature"), 2)
-        if numbers is not None:
-            rate, exponent = numbers[:2]
-            _set_rate(deck, card, lambda: CowperSymonds(rate, exponent))
+        rate, exponent, _ = _one(card, ("D", "n", "the temperature"), 2)
+        _set_rate(deck, card, lambda: CowperSymonds(rate, exponent))
 
 
 def creep(deck: Deck, card: Card) -> None:
     """``*CREEP[, LAW=]``: A, n, m, temperature."""
-    law = CREEP_LAWS[deck.choice(card, "LAW", tuple(CREEP_LAWS), "NORTON")]
-    rows = _rows(deck, card, ("A", "n", "m", "the temperature"), 2)
+    law = CREEP_LAWS[card.choice("LAW", tuple(CREEP_LAWS), "NORTON")]
+    rows = _rows(card, ("A", "n", "m", "the temperature"), 2)
     found = open_material(deck, card)
-    if rows is None or found is None:
-        return
     if any(row[2] for row in rows) and not card.has("LAW"):
         deck.note(
             f"{card.where}: {card.spelled} without LAW= hardens with the time, as in CalculiX"
         )
     if len({row[3] for row in rows}) != len(rows):
-        deck.error(
-            card,
-            card.where,
-            "a temperature is given twice",
-            hint="each set of A, n and m needs its own temperature, after m",
-        )
-        return
+        hint = "each set of A, n and m needs its own temperature, after m"
+        card.refuse("a temperature is given twice", hint=hint)
 
     def make() -> Norton:
         laws = [(t, Norton(a, n, m, law)) for a, n, m, t in rows]  # type: ignore[arg-type]
@@ -121,47 +91,33 @@ def creep(deck: Deck, card: Card) -> None:
 
 def johnson_cook(deck: Deck, card: Card) -> None:
     """``*PLASTIC, HARDENING=JOHNSON COOK``: A, B, n, m and two temperatures."""
-    found = open_material(deck, card)
-    numbers = _one(deck, card, JOHNSON_COOK, 3)
-    if found is None or numbers is None:
-        return
+    found, numbers = open_material(deck, card), _one(card, JOHNSON_COOK, 3)
     if found.johnson_cook is not None or found.plastic is not None:
-        deck.error(card, card.where, f"material {found.name} already has a *PLASTIC")
-        return
-    found.johnson_cook = numbers
-    found.johnson_cook_card = card
+        card.refuse(f"material {found.name} already has a *PLASTIC")
+    found.johnson_cook, found.johnson_cook_card = numbers, card
 
 
 def specific_heat(deck: Deck, card: Card) -> None:
     """``*SPECIFIC HEAT``: heat by mass and temperature; for adiabatic heating."""
     found = open_material(deck, card)
-    rows = _rows(deck, card, ("the specific heat", "the temperature"), 1)
-    if found is None or rows is None:
-        return
+    rows = _rows(card, ("the specific heat", "the temperature"), 1)
     if len(rows) > 1:
-        deck.note(f"{card.where}: {card.spelled}: the first of {len(rows)} values is used")
+        card.note(f"the first of {len(rows)} values is used")
     found.specific_heat = rows[0][0]
 
 
 def heat_fraction(deck: Deck, card: Card) -> None:
     """``*INELASTIC HEAT FRACTION``: share of the plastic work that heats, by default 0.9."""
-    found = open_material(deck, card)
-    if found is None:
-        return
-    rows = list(card.rows())
-    value = deck.real(card, rows[0], 0, "the fraction", 0.9) if rows else 0.9
-    if value is not None:
-        found.heat_fraction = value
+    found, row = open_material(deck, card), next(card.rows(), None)
+    found.heat_fraction = 0.9 if row is None else row.number(0, "the fraction", 0.9)
 
 
 def visco(deck: Deck, card: Card) -> None:
     """``*VISCO[, CETOL=][, DIRECT]``: first increment, period, smallest and largest increment."""
     now = open_procedure(deck, card)
-    if now is None:
-        return
     now.make, now.direct = Visco, card.has("DIRECT")
-    step_times(deck, card, now)
-    tolerance = deck.parameter_number(card, "CETOL", 0.0, 0.0) if card.has("CETOL") else None
+    step_times(card, now)
+    tolerance = card.number("CETOL", 0.0, 0.0) if card.has("CETOL") else None
     # Without AMPLITUDE=RAMP the loads of such a step act at once.
     ramp = key(now.card.value("AMPLITUDE")) == "RAMP"
     now.options = {"ramp": ramp, "creep_tolerance": tolerance, **deck.controls}

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.errors import Location
 from corota.io.deck import numerals
-from corota.io.deck.drafts import Draft, ElementBlock, NodeBlock, ReleaseDraft, Scope, TieDraft
+from corota.io.deck.card import Card, key
+from corota.io.deck.drafts import Draft, ElementBlock, ReleaseDraft, Scope, TieDraft
 from corota.io.deck.elements import LINE_ELEMENTS
-from corota.io.deck.lexer import Card, key
 
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
@@ -27,20 +26,20 @@ MOMENTS |= {"M2-T": False}
 def release(deck: Deck, card: Card) -> None:
     """``*RELEASE``: element or set, S1 or S2, moments that the end does not carry."""
     for row in card.rows():
-        deck.extra_fields(card, row, 3)
+        row.at_most(3)
         end, what = key(row.get(1)), key(row.get(2))
         if not row.get(0):
-            deck.row_error(card, row, 0, "an element number or a set is missing")
+            row.error(0, "an element number or a set is missing")
         elif end not in ENDS:
-            deck.row_error(card, row, 1, f"expected S1 or S2, found {row.get(1)!r}")
+            row.error(1, f"expected S1 or S2, found {row.get(1)!r}")
         elif what not in MOMENTS:
-            deck.row_error(card, row, 2, f"expected {', '.join(MOMENTS)}, found {row.get(2)!r}")
+            row.error(2, f"expected {', '.join(MOMENTS)}, found {row.get(2)!r}")
         elif not MOMENTS[what]:
-            deck.note(f"{row.where}: {card.spelled}: {what} acts out of the plane and is ignored")
+            row.note(f"{what} acts out of the plane and is ignored")
         else:
-            deck.releases.append(ReleaseDraft(card, row, deck.scope, ENDS[end]))
+            deck.releases.append(ReleaseDraft(row, deck.scope, ENDS[end]))
     if not list(card.rows()):
-        deck.error(card, card.where, "a data line is missing: element or set, S1 or S2, moments")
+        card.error("a data line is missing: element or set, S1 or S2, moments")
 
 
 def add_releases(deck: Deck) -> None:
@@ -55,7 +54,7 @@ def add_releases(deck: Deck) -> None:
                 hinged = True
                 _hinge(deck, draft, block, row)
         if not hinged:
-            deck.row_error(draft.card, draft.row, 0, f"no beams in {draft.row.get(0)}")
+            draft.row.error(0, f"no beams in {draft.row.get(0)}")
 
 
 def _labels(scope: Scope, name: str) -> Ints:
@@ -70,20 +69,11 @@ def _labels(scope: Scope, name: str) -> Ints:
 
 
 def _hinge(deck: Deck, draft: ReleaseDraft, block: ElementBlock, row: int) -> None:
-    scope, card = draft.scope, draft.card
     old = int(block.nodes[row, draft.end])
-    new = 1 + max(int(b.labels.max(initial=0)) for b in scope.nodes)
-    point = point_of(scope, old)
-    if point is None:
-        return  # its element is reported
-    block.nodes[row, draft.end] = new
-    at = draft.row.where or Location("", 0, 0)
-    lines = np.array([at.line], np.int64)
-    scope.nodes.append(NodeBlock(np.array([new], np.int64), point, at.file, lines))
-    tie = TieDraft("same", card, at, ready=True, dofs=(0, 1))
-    tie.target = Draft("node", card, draft.row, str(new), (0.0,))
-    tie.terms = [Draft("node", card, draft.row, str(old), (0.0,))]
-    deck.ties.append(tie)
+    point = point_of(draft.scope, old)
+    if point is not None:  # its element is reported otherwise
+        at = Draft("node", draft.row, str(old), (0.0,))
+        block.nodes[row, draft.end] = int(add_twin(deck, draft.scope, at, point).target)
 
 
 def point_of(scope: Scope, label: int) -> Floats | None:
@@ -93,3 +83,11 @@ def point_of(scope: Scope, label: int) -> Floats | None:
         if len(found):
             return np.array(block.points[found[-1:]], np.float64)
     return None
+
+
+def add_twin(deck: Deck, scope: Scope, old: Draft, point: Floats) -> Draft:
+    """A new node at the place of another, which moves with it but turns freely."""
+    new = Draft("node", old.row, str(scope.add_node(point, old.row.where)), (0.0,))
+    tie = TieDraft("same", old.card, old.row.where, [old], new, ready=True, dofs=(0, 1))
+    deck.ties.append(tie)
+    return new

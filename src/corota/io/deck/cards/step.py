@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from corota.io.deck.card import Card, key
 from corota.io.deck.drafts import StepDraft
-from corota.io.deck.lexer import Card, key
 from corota.model.steps import Dynamic
 
 if TYPE_CHECKING:
@@ -32,9 +32,7 @@ def turns_nlgeom_on(deck: Deck, card: str) -> None:
 def step(deck: Deck, card: Card) -> None:
     """``*STEP[, NLGEOM][, INC=][, AMPLITUDE=RAMP|STEP]``."""
     if deck.step is not None:
-        deck.error(
-            card, card.where, f"the step of {deck.step.card.where} has no *END STEP before this"
-        )
+        card.error(f"the step of {deck.step.card.where} has no *END STEP before this")
     before = bool(deck.steps and deck.steps[-1].nlgeom)
     nlgeom = before or bool(deck.nonlinear)
     if deck.nonlinear and not card.has("NLGEOM"):
@@ -42,18 +40,16 @@ def step(deck: Deck, card: Card) -> None:
         turn = "turns" if len(deck.nonlinear) == 1 else "turn"
         deck.note(f"{names} {turn} NLGEOM on in steps that do not say NLGEOM=NO, as in CalculiX")
     if card.has("NLGEOM"):
-        nlgeom = (
-            deck.choice(card, "NLGEOM", ("YES", "NO", "ON", "OFF", ""), "YES") not in ("NO", "OFF")
-            or before
-        )
-        if before and nlgeom and key(card.value("NLGEOM")) in ("NO", "OFF"):
+        said = card.choice("NLGEOM", ("YES", "NO", "ON", "OFF", ""), "YES")
+        nlgeom = said not in ("NO", "OFF") or before
+        if before and key(card.value("NLGEOM")) in ("NO", "OFF"):
             deck.notes.append(
                 f"{card.where}: NLGEOM=NO after a step with NLGEOM has no effect: large "
                 "rotations stay on, because the structure would jump to the solution of the "
                 "linear theory"
             )
-    limit = deck.parameter_integer(card, "INC", 100, 1)
-    ramp = deck.choice(card, "AMPLITUDE", ("RAMP", "STEP"), "RAMP") == "RAMP"
+    limit = card.integer("INC", 100, 1)
+    ramp = card.choice("AMPLITUDE", ("RAMP", "STEP"), "RAMP") == "RAMP"
     deck.step = StepDraft(card, nlgeom, limit, ramp, restart=deck.restart)
     deck.steps.append(deck.step)
     deck.material = None
@@ -61,27 +57,18 @@ def step(deck: Deck, card: Card) -> None:
 
 def end_step(deck: Deck, card: Card) -> None:
     """``*END STEP``."""
-    deck.no_rows(card)
-    if deck.step is None:
-        deck.error(card, card.where, "there is no open *STEP")
-    elif deck.step.procedure is None:
-        deck.error(
-            card,
-            card.where,
-            f"the step of {deck.step.card.where} has no procedure",
-            hint="put *STATIC after *STEP",
-        )
-    elif deck.step.card.has("PERTURBATION") and deck.step.make is None:
-        _perturb(deck, deck.step)
-    elif deck.step.make in (None, Dynamic) and any(s.perturbs for s in deck.steps):
-        deck.error(
-            deck.step.card,
-            deck.step.card.where,
-            "a step after a linear perturbation starts from the state before that one, which is "
-            "not part of this version",
-            hint="put it into another deck",
-        )
-    deck.step = None
+    card.no_rows()
+    now, deck.step = deck.step, None
+    if now is None:
+        card.error("there is no open *STEP")
+    elif now.procedure is None:
+        text = f"the step of {now.card.where} has no procedure"
+        card.error(text, hint="put *STATIC after *STEP")
+    elif now.card.has("PERTURBATION") and now.make is None:
+        _perturb(deck, now)
+    elif now.make in (None, Dynamic) and any(s.perturbs for s in deck.steps):
+        text = "a step after a linear perturbation starts from the state before that one, which is"
+        now.card.error(f"{text} not part of this version", hint="put it into another deck")
 
 
 def _perturb(deck: Deck, now: StepDraft) -> None:
@@ -91,15 +78,12 @@ def _perturb(deck: Deck, now: StepDraft) -> None:
     not matter that it starts from the load case before.
     """
     if any(not s.perturbs and s.make is None for s in deck.steps if s is not now):
-        deck.error(
-            now.card,
-            now.card.at("PERTURBATION"),
+        now.card.refuse(
             "a linear perturbation of a loaded state is not part of this version",
-            hint="leave PERTURBATION out: loads then continue from the step before",
+            "PERTURBATION",
+            "leave PERTURBATION out: loads then continue from the step before",
         )
-        return
-    now.perturbs = True
-    now.nlgeom = False
+    now.perturbs, now.nlgeom = True, False
     now.new_loads |= {"force", "distributed", "temperature"}
     if not now.new_supports:
         now.new_supports = len(deck.steps) > 1
@@ -108,86 +92,69 @@ def _perturb(deck: Deck, now: StepDraft) -> None:
     deck.note(f"{now.card.where}: PERTURBATION: {which}")
 
 
-def open_procedure(deck: Deck, card: Card) -> StepDraft | None:
-    """The open step with this card as its procedure; ``None`` after an error."""
+def open_procedure(deck: Deck, card: Card) -> StepDraft:
+    """The open step with this card as its procedure.
+
+    Raises
+    ------
+    Refused
+        If there is none, or it has a procedure.
+    """
     now = open_step(deck, card)
-    if now is not None and now.procedure is not None:
-        deck.error(card, card.where, "the step already has a procedure")
-        return None
-    if now is not None:
-        now.procedure = card
+    if now.procedure is not None:
+        card.refuse("the step already has a procedure")
+    now.procedure = card
     return now
 
 
-def static(deck: Deck, card: Card) -> None:
-    """Read ``*STATIC[, DIRECT]``: first increment, period, smallest and largest increment."""
-    now = open_procedure(deck, card)
-    if now is not None:
-        now.direct = card.has("DIRECT")
-        step_times(deck, card, now)
-
-
-def step_times(deck: Deck, card: Card, now: StepDraft) -> None:
+def step_times(card: Card, now: StepDraft) -> None:
     """Read the data line of a procedure: first increment, period, smallest, largest."""
     rows = list(card.rows())
     if len(rows) > 1:
-        deck.row_error(card, rows[1], 0, "one data line is expected")
+        rows[1].error(0, "one data line is expected")
     if not rows:
         return
-    deck.extra_fields(card, rows[0], 4)
+    row = rows[0]
+    row.at_most(4)
     names = ("the first increment", "the period", "the smallest increment", "the largest increment")
-    values = [deck.real(card, rows[0], i, name, 0.0) for i, name in enumerate(names)]
+    values = row.reals(names, 0.0)
     for index, value in enumerate(values):
-        if value is None:
-            return
-        if value < 0.0 or (value == 0.0 and index < 2 and rows[0].get(index)):
-            deck.row_error(card, rows[0], index, f"{names[index]} must be > 0, not {value:g}")
-            return
-    first, period, least, most = (float(v or 0.0) for v in values)
+        if value < 0.0 or (value == 0.0 and index < 2 and row.get(index)):
+            row.refuse(index, f"{names[index]} must be > 0, not {value:g}")
+    first, period, least, most = values
     period = period or 1.0
     first = first or period
     if first > period:
-        deck.row_error(
-            card, rows[0], 0, f"the first increment {first:g} exceeds the period {period:g}"
-        )
-    elif least > first:
-        deck.row_error(
-            card, rows[0], 2, f"the smallest increment {least:g} exceeds the first, {first:g}"
-        )
-    elif most and most < least:
-        deck.row_error(
-            card, rows[0], 3, f"the largest increment {most:g} is below the smallest, {least:g}"
-        )
-    else:
-        if most and most < first:
-            text = f"the first increment {first:g} is reduced to the largest, {most:g}"
-            deck.note(f"{rows[0].where}: {text}")
-            first = most
-        now.times = (first, period, least, most)
+        row.refuse(0, f"the first increment {first:g} exceeds the period {period:g}")
+    if least > first:
+        row.refuse(2, f"the smallest increment {least:g} exceeds the first, {first:g}")
+    if most and most < least:
+        row.refuse(3, f"the largest increment {most:g} is below the smallest, {least:g}")
+    if most and most < first:
+        text = f"the first increment {first:g} is reduced to the largest, {most:g}"
+        card.deck.note(f"{row.where}: {text}")
+        first = most
+    now.times = (first, period, least, most)
 
 
-def renews(deck: Deck, now: StepDraft | None, card: Card, kind: str) -> bool:
+def renews(now: StepDraft | None, card: Card, kind: str) -> bool:
     """Whether a card removes loads of its kind from earlier steps (``OP=NEW``)."""
-    new = deck.choice(card, "OP", ("NEW", "MOD"), "MOD") == "NEW"
+    new = card.choice("OP", ("NEW", "MOD"), "MOD") == "NEW"
     if now is None:
         return new
     before = kind in now.said
     now.said.add(kind)
     renewed = now.new_supports if kind == "support" else kind in now.new_loads
     if new and before and not renewed:
-        deck.error(
-            card,
-            card.at("OP"),
-            f"OP=NEW comes after another card of the step with {_KINDS[kind]}",
-            hint="put OP=NEW on the first of them; CalculiX ignores it here",
-        )
+        text = f"OP=NEW comes after another card of the step with {_KINDS[kind]}"
+        card.error(text, "OP", "put OP=NEW on the first of them; CalculiX ignores it here")
     return new
 
 
-def loads_of(deck: Deck, card: Card, kind: LoadKind) -> StepDraft | None:
-    """Return the step that a card of loads belongs to, or None after an error."""
+def loads_of(deck: Deck, card: Card, kind: LoadKind) -> StepDraft:
+    """The step that a card of loads belongs to; as :func:`open_step`."""
     now = open_step(deck, card)
-    if now is not None and renews(deck, now, card, kind):
+    if renews(now, card, kind):
         now.new_loads.add(kind)
     return now
 
@@ -209,8 +176,14 @@ def keeps_preload(deck: Deck, card: Card, now: StepDraft) -> bool:
     return kept
 
 
-def open_step(deck: Deck, card: Card) -> StepDraft | None:
-    """Return the open step, or None after an error."""
+def open_step(deck: Deck, card: Card) -> StepDraft:
+    """The open step.
+
+    Raises
+    ------
+    Refused
+        If there is none.
+    """
     if deck.step is None:
-        deck.error(card, card.where, "the card belongs inside a step, between *STEP and *END STEP")
+        card.refuse("the card belongs inside a step, between *STEP and *END STEP")
     return deck.step

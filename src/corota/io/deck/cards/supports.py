@@ -3,10 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from contextlib import suppress
+
+from corota.io.deck.card import Card, Refused, Row, complete, key, nearest
 from corota.io.deck.cards.step import renews
-from corota.io.deck.deck import Deck, nearest
-from corota.io.deck.drafts import Draft
-from corota.io.deck.lexer import Card, Row, key
+from corota.io.deck.deck import Deck
+from corota.io.deck.drafts import PLANAR, Draft
 
 #: Names of Abaqus for groups of degrees of freedom (numbers from 1).
 NAMED_SUPPORTS = {
@@ -27,102 +29,66 @@ RATES = {"DISPLACEMENT": 0, "VELOCITY": 1, "ACCELERATION": 2}
 
 def boundary(deck: Deck, card: Card) -> None:
     """``*BOUNDARY[, OP=][, AMPLITUDE=][, TYPE=][, FIXED]``: target, first dof[, last[, value]]."""
-    if renews(deck, deck.step, card, "support") and deck.step is not None:
+    if renews(deck.step, card, "support") and deck.step is not None:
         deck.step.new_supports = True
-    kind = deck.choice(card, "TYPE", RATES, "DISPLACEMENT")
+    order = RATES[card.choice("TYPE", RATES, "DISPLACEMENT")]
     into = deck.step.supports if deck.step is not None else deck.supports
     keep = card.has("FIXED")
-    if deck.step is None and (keep or RATES[kind]):
+    if deck.step is None and (keep or order):
         name = "FIXED" if keep else "TYPE"
         text = f"{card.parameters[name].name} belongs in a step"
-        deck.error(card, card.at(name), text, hint="put the card between *STEP and *END STEP")
-        return
+        card.refuse(text, name, "put the card between *STEP and *END STEP")
     for row in card.rows():
-        deck.extra_fields(card, row, 4)
-        found = _supports(deck, card, row)
-        for draft in found:
-            draft.order, draft.keep = RATES[kind], keep
-        into.extend(found)
+        row.at_most(4)
+        with suppress(Refused):
+            for draft in _supports(deck, row):
+                draft.order, draft.keep = order, keep
+                into.append(draft)
 
 
-def _supports(deck: Deck, card: Card, row: Row) -> list[Draft]:
-    amplitude = card.value("AMPLITUDE")
-    named = key(row.get(1))
-    if not row.get(0):
-        deck.row_error(card, row, 0, "a node number or a set is missing")
-        return []
+def _supports(deck: Deck, row: Row) -> list[Draft]:
+    named, target = key(row.get(1)), row.get(0)
+    if not target:
+        row.refuse(0, "a node number or a set is missing")
     if named and not named.lstrip("+-")[:1].isdigit():
         if named not in NAMED_SUPPORTS:
-            deck.row_error(
-                card,
-                row,
-                1,
-                f"expected a degree of freedom 1 to 6, found {row.get(1)!r}",
-                nearest(named, NAMED_SUPPORTS),
-            )
-            return []
+            text = f"expected a degree of freedom 1 to 6, found {row.get(1)!r}"
+            row.refuse(1, text, nearest(named, NAMED_SUPPORTS))
         dofs, value = NAMED_SUPPORTS[named], 0.0
     else:
-        first = dof_of(deck, card, row, 1)
-        last = dof_of(deck, card, row, 2) if row.get(2) else first
-        number = deck.real(card, row, 3, "the value", 0.0)
-        if first is None or last is None or number is None:
-            return []
-        if last < first:
-            deck.row_error(card, row, 2, f"the last dof {last} is below the first, {first}")
-            return []
-        dofs, value = tuple(range(first, last + 1)), number
-    found = []
-    turned = deck.turned(row.get(0))
+        first = dof_of(row, 1)
+        ends, number = (
+            [first, dof_of(row, 2) if row.get(2) else first],
+            row.real(3, "the value", 0.0),
+        )
+        (low, high), (value,) = complete(ends), complete([number])
+        if high < low:
+            row.refuse(2, f"the last dof {high} is below the first, {low}")
+        dofs = tuple(range(low, high + 1))
+    turned = deck.turned(target)
     if turned is not None:
-        return _turns(deck, card, row, turned, dofs, value)
+        # Dof 3 of a rotation node is the rotation of the reference node.
+        if value != 0.0 and any(dof != 3 for dof in dofs):
+            row.refuse(3, "only dof 3 of a rotation node turns in the plane")
+        return [Draft("fixed" if 3 in dofs else "nothing", row, turned, (value,), 2)]
+    found = []
     for dof in dofs:
-        if dof in (1, 2, 6):
-            index = {1: 0, 2: 1, 6: 2}[dof]
+        if dof in PLANAR:
             wide = len(dofs) > 1 and value == 0.0
-            found.append(
-                Draft("fixed", card, row, row.get(0), (value,), index, amplitude, silent=wide)
-            )
+            found.append(Draft("fixed", row, target, (value,), PLANAR[dof], silent=wide))
         elif value != 0.0:
-            deck.row_error(card, row, 3, f"dof {dof} of a planar model is zero and cannot be moved")
-            return []
-    if not found:
-        found.append(Draft("nothing", card, row, row.get(0), (0.0,)))
-    return found
+            row.refuse(3, f"dof {dof} of a planar model is zero and cannot be moved")
+    return found or [Draft("nothing", row, target, (0.0,))]
 
 
-def _turns(
-    deck: Deck, card: Card, row: Row, target: str, dofs: tuple[int, ...], value: float
-) -> list[Draft]:
-    """Supports of a rotation node: its dof 3 is the rotation of the reference node."""
-    if value != 0.0 and any(dof != 3 for dof in dofs):
-        deck.row_error(card, row, 3, "only dof 3 of a rotation node turns in the plane")
-        return []
-    kind = "fixed" if 3 in dofs else "nothing"
-    return [Draft(kind, card, row, target, (value,), 2, card.value("AMPLITUDE"))]
-
-
-def dof_of(deck: Deck, card: Card, row: Row, index: int) -> int | None:
+def dof_of(row: Row, index: int) -> int | None:
     """Degree of freedom in a field, from 0; ``None`` after an error."""
-    dof = deck.integer(card, row, index, "the degree of freedom")
-    if dof is None:
-        return None
+    dof = row.integer(index, "the degree of freedom")
     if dof == 11:
-        deck.row_error(
-            card,
-            row,
-            index,
-            "dof 11 belongs to heat conduction",
-            "give temperatures by *TEMPERATURE",
-        )
+        row.error(index, "dof 11 belongs to heat conduction", "give temperatures by *TEMPERATURE")
         return None
-    if not 1 <= dof <= 6:
-        deck.row_error(
-            card,
-            row,
-            index,
-            f"expected a degree of freedom 1 to 6, found {dof}",
-            "1 = x, 2 = y, 6 = drilling rotation",
-        )
+    if dof is not None and not 1 <= dof <= 6:
+        text = f"expected a degree of freedom 1 to 6, found {dof}"
+        row.error(index, text, "1 = x, 2 = y, 6 = drilling rotation")
         return None
     return dof

@@ -4,130 +4,100 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from corota.io.deck.card import Card, Refused, Row, both, complete, key
 from corota.io.deck.cards.step import turns_nlgeom_on
-from corota.io.deck.drafts import Draft, TieDraft
-from corota.io.deck.lexer import Card, Row, key
+from corota.io.deck.drafts import PLANAR, Draft, TieDraft
 from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
 
-link = lazy("corota.io.deck.cards.connectors:link")
+#: Constraints of ``*MPC``, and their kinds.
+MPC_KINDS = {"BEAM": "kinematic", "PIN": "same", "TIE": "same", "LINEAR": "between"}
+MPC_KINDS |= {"STRAIGHT": "straight", "SLIDER": "straight"}
 
-#: Degrees of freedom of decks in the plane, and their index here.
-PLANAR = {1: 0, 2: 1, 6: 2}
+link = lazy("corota.io.deck.cards.connectors:link")
 
 
 def equation(deck: Deck, card: Card) -> None:
     """``*EQUATION``: number of terms, then node, dof, coefficient for each term."""
     rows = list(card.rows())
     if not rows:
-        deck.error(card, card.where, "data lines are missing: the number of terms, the terms")
-    fields = [(row, i) for row in rows for i in range(_used(row))]
+        card.error("data lines are missing: the number of terms, the terms")
+    used = [max((i + 1 for i in range(len(row)) if row.get(i)), default=0) for row in rows]
+    fields = [(row, i) for row, count in zip(rows, used, strict=True) for i in range(count)]
     at = 0
     while at < len(fields):
         row, index = fields[at]
-        count = deck.integer(card, row, index, "the number of terms")
-        if count is None:
-            return
+        count = row.whole(index, "the number of terms")
         if count < 1 or index != 0:
-            deck.row_error(card, row, index, "expected the number of terms, at least 1")
-            return
+            row.refuse(index, "expected the number of terms, at least 1")
         terms = fields[at + 1 : at + 1 + 3 * count]
         if len(terms) < 3 * count:
-            deck.row_error(
-                card, row, index, f"{count} terms need {3 * count} numbers, {len(terms)} follow"
-            )
-            return
+            text = f"{count} terms need {3 * count} numbers, {len(terms)} follow"
+            row.refuse(index, text)
         tie = TieDraft("equation", card, row.where, ready=True)
         for k in range(0, 3 * count, 3):
             (of_node, i), (of_dof, j), (of_value, c) = terms[k : k + 3]
-            dof = deck.integer(card, of_dof, j, "the degree of freedom")
-            value = deck.real(card, of_value, c, "the coefficient")
-            if dof is None or value is None:
-                return
+            way = of_dof.integer(j, "the degree of freedom")
+            dof, value = both(way, of_value.real(c, "the coefficient"))
             if not 1 <= dof <= 6:
-                deck.row_error(card, of_dof, j, f"expected a degree of freedom 1 to 6, found {dof}")
-                return
+                of_dof.refuse(j, f"expected a degree of freedom 1 to 6, found {dof}")
             if dof in PLANAR:
-                tie.terms.append(
-                    Draft("term", card, of_node, of_node.get(i), (value,), PLANAR[dof])
-                )
+                tie.terms.append(Draft("term", of_node, of_node.get(i), (value,), PLANAR[dof]))
         if tie.terms:  # terms that vanish in the plane are dropped
             deck.ties.append(tie)
         at += 1 + 3 * count
 
 
-def _used(row: Row) -> int:
-    """Fields up to the last that is not empty."""
-    return max((i + 1 for i in range(len(row)) if row.get(i)), default=0)
-
-
-def _reference(deck: Deck, card: Card, name: str) -> Draft | None:
-    text = deck.required(card, name)
-    if not text:
-        return None
-    return Draft("node", card, parameter_row(card, name), text, (0.0,))
-
-
-def parameter_row(card: Card, name: str) -> Row:
-    """Row of one field that stands for the value of a parameter."""
-    from corota.io.deck.lexer import Row
-
-    return Row(card.at(name), card.text, [card.value(name)], [card.at(name).column])
+def _reference(card: Card) -> Draft | None:
+    text = card.required("REFNODE")
+    return Draft("node", card.row_of("REFNODE"), text, (0.0,)) if text else None
 
 
 def rigid_body(deck: Deck, card: Card) -> None:
     """``*RIGID BODY, NSET= or ELSET= or ANALYTICAL SURFACE=, REF NODE=[, ROT NODE=]``."""
-    deck.no_rows(card)
+    card.no_rows()
     profile = card.has("ANALYTICALSURFACE")
     alone = profile and not card.has("NSET") and not card.has("ELSET")
     # A profile without a reference node is fixed.
     fixed = alone and not card.has("REFNODE") and not card.has("ROTNODE")
-    reference = None if fixed else _reference(deck, card, "REFNODE")
+    reference = None if fixed else _reference(card)
     if profile and (fixed or reference is not None):
-        if not deck.required(card, "ANALYTICALSURFACE"):
+        if not card.required("ANALYTICALSURFACE"):
             return
         deck.carriers[key(card.value("ANALYTICALSURFACE"))] = (card, reference)
-    if alone:
-        _rotation_node(deck, card, reference)
-        return
     given = [p for p in ("NSET", "ELSET", "PINNSET", "TIENSET") if card.has(p)]
-    if not given or (card.has("NSET") and card.has("ELSET")):
-        deck.error(card, card.where, "either NSET= or ELSET= is expected")
-        return
-    _rotation_node(deck, card, reference)
-    for parameter in given:
-        name = deck.required(card, parameter)
+    if not alone and (not given or (card.has("NSET") and card.has("ELSET"))):
+        card.refuse("either NSET= or ELSET= is expected")
+    if card.has("ROTNODE") and reference is not None:
+        # Its dof 3 is the rotation in the plane, its dofs 1 and 2 those out of it.
+        deck.rotation_nodes[key(card.value("ROTNODE"))] = reference.target
+    for parameter in given if not alone else ():
+        name = card.required(parameter)
         if reference is None or not name:
             return
         tie = TieDraft("kinematic", card, card.where, [reference], ready=True)
         if parameter == "ELSET":
             tie.elset = name
         else:
-            tie.target = Draft("set", card, parameter_row(card, parameter), name, (0.0,))
+            tie.target = Draft("set", card.row_of(parameter), name, (0.0,))
         if parameter == "PINNSET":
             tie.dofs = (0, 1)
         deck.ties.append(tie)
 
 
-def _rotation_node(deck: Deck, card: Card, reference: Draft | None) -> None:
-    if card.has("ROTNODE") and reference is not None:
-        # Its dof 3 is the rotation in the plane, its dofs 1 and 2 those out of it.
-        deck.rotation_nodes[key(card.value("ROTNODE"))] = reference.target
-
-
 def coupling(deck: Deck, card: Card) -> None:
     """``*COUPLING, REF NODE=, SURFACE=, CONSTRAINT NAME=``; its kind is the card after it."""
-    deck.no_rows(card)
-    reference = _reference(deck, card, "REFNODE")
-    surface = deck.required(card, "SURFACE")
+    card.no_rows()
+    reference, surface = _reference(card), card.required("SURFACE")
     if reference is not None and surface:
         tie = TieDraft("kinematic", card, card.where, [reference], surface=surface)
         if key(card.value("INFLUENCERADIUS")) not in ("", "WHOLESURFACE"):
-            tie.radius = deck.parameter_number(card, "INFLUENCERADIUS", math.inf, 0.0)
+            tie.radius = card.number("INFLUENCERADIUS", math.inf, 0.0)
         deck.ties.append(tie)
 
 
@@ -138,84 +108,76 @@ def kinematic(deck: Deck, card: Card) -> None:
 
 def distributing(deck: Deck, card: Card) -> None:
     """``*DISTRIBUTING``: first and last dof of the reference node that follow the surface."""
-    deck.choice(card, "WEIGHTINGMETHOD", ("UNIFORM",), "UNIFORM")
+    card.choice("WEIGHTINGMETHOD", ("UNIFORM",), "UNIFORM")
     _kind(deck, card, "distributing")
 
 
 def kinematic_coupling(deck: Deck, card: Card) -> None:
     """``*KINEMATIC COUPLING, REF NODE=``: node or set, first dof, last dof."""
-    reference = _reference(deck, card, "REFNODE")
-    rows = list(card.rows())
-    if not rows:
-        deck.error(card, card.where, "a data line is missing: node or set, first dof, last dof")
-    for row in rows:
-        deck.extra_fields(card, row, 3)
-        first = deck.integer(card, row, 1, "the first dof", 1)
-        last = deck.integer(card, row, 2, "the last dof", first if row.get(1) else 6)
-        if reference is None or first is None or last is None:
+    reference = _reference(card)
+    for row in card.lines("node or set, first dof, last dof"):
+        row.at_most(3)
+        start = row.integer(1, "the first dof", 1)
+        end = row.integer(2, "the last dof", start if row.get(1) else 6)
+        first, last = complete([start, end])
+        if reference is None:
             return
         dofs = tuple(PLANAR[d] for d in range(first, last + 1) if d in PLANAR)
         if not row.get(0):
-            deck.row_error(card, row, 0, "a node number or a set is missing")
+            row.error(0, "a node number or a set is missing")
         elif not 1 <= first <= last <= 6:
-            deck.row_error(card, row, 1, "expected 1 <= first dof <= last dof <= 6")
+            row.error(1, "expected 1 <= first dof <= last dof <= 6")
         elif dofs:
-            tie = TieDraft("kinematic", card, row.where, [reference], ready=True, dofs=dofs)
-            tie.target = Draft("set", card, row, row.get(0), (0.0,))
+            nodes = Draft("set", row, row.get(0), (0.0,))
+            tie = TieDraft("kinematic", card, row.where, [reference], nodes, dofs=dofs, ready=True)
             deck.ties.append(tie)
 
 
 def couplers(deck: Deck, card: Card) -> None:
     """``*ELEMENT, TYPE=DCOUP2D`` or ``DCOUP3D``: number, reference node of a coupling."""
-    name = deck.required(card, "ELSET")
+    name = card.required("ELSET")
     for row in card.rows():
-        deck.extra_fields(card, row, 2)
-        label = deck.integer(card, row, 0, "the element number")
-        node = deck.integer(card, row, 1, "the reference node")
+        row.at_most(2)
+        label, node = row.integer(0, "the element number"), row.integer(1, "the reference node")
         if name and label is not None and node is not None:
-            deck.couplers[key(name)] = Draft("node", card, row, str(node), ())
+            deck.couplers[key(name)] = Draft("node", row, str(node), ())
 
 
 def distributing_coupling(deck: Deck, card: Card) -> None:
     """``*DISTRIBUTING COUPLING, ELSET=``: node or set, weight."""
-    name = deck.required(card, "ELSET")
+    name = card.required("ELSET")
     tie = TieDraft("distributing", card, card.where, ready=True, elset=name)
-    for row in card.rows():
-        deck.extra_fields(card, row, 2)
-        weight = deck.real(card, row, 1, "the weight", 1.0)
+    for row in card.lines("node or set, weight"):
+        row.at_most(2)
+        weight = row.real(1, "the weight", 1.0)
         if not row.get(0):
-            deck.row_error(card, row, 0, "a node number or a set is missing")
+            row.error(0, "a node number or a set is missing")
         elif weight is not None and weight <= 0.0:
-            deck.row_error(card, row, 1, f"the weight must be > 0, not {weight:g}")
+            row.error(1, f"the weight must be > 0, not {weight:g}")
         elif weight is not None:
-            tie.members.append((Draft("node", card, row, row.get(0), (0.0,)), weight))
-    if not list(card.rows()):
-        deck.error(card, card.where, "a data line is missing: node or set, weight")
-    elif name and tie.members:
+            tie.members.append((Draft("node", row, row.get(0), (0.0,)), weight))
+    if name and tie.members:
         deck.ties.append(tie)
 
 
 def _kind(deck: Deck, card: Card, kind: str) -> None:
     tie = deck.ties[-1] if deck.ties else None
     if tie is None or tie.ready or not tie.surface:
-        deck.error(card, card.where, "the card belongs to a *COUPLING, but there is none before it")
-        return
+        card.refuse("the card belongs to a *COUPLING, but there is none before it")
     tie.kind, tie.ready = kind, True
-    dofs: list[int] = []
-    for row in card.rows():
-        deck.extra_fields(card, row, 2)
-        first = deck.integer(card, row, 0, "the first dof")
-        last = deck.integer(card, row, 1, "the last dof", first)
-        if first is None or last is None:
-            return
+    dofs: set[int] = set()
+    rows = list(card.rows())
+    for row in rows:
+        row.at_most(2)
+        start = row.integer(0, "the first dof")
+        first, last = complete([start, row.integer(1, "the last dof", start)])
         if not 1 <= first <= last <= 6:
-            deck.row_error(card, row, 0, "expected 1 <= first dof <= last dof <= 6")
-            return
-        dofs += [PLANAR[d] for d in range(first, last + 1) if d in PLANAR]
+            row.refuse(0, "expected 1 <= first dof <= last dof <= 6")
+        dofs |= {PLANAR[d] for d in range(first, last + 1) if d in PLANAR}
     if dofs:
-        tie.dofs = tuple(sorted(set(dofs)))
-    elif list(card.rows()):
-        deck.error(card, card.where, "no dof of the plane is coupled; 1 = x, 2 = y, 6 = rotation")
+        tie.dofs = tuple(sorted(dofs))
+    elif rows:
+        card.error("no dof of the plane is coupled; 1 = x, 2 = y, 6 = rotation")
 
 
 def mpc(deck: Deck, card: Card) -> None:
@@ -228,96 +190,75 @@ def mpc(deck: Deck, card: Card) -> None:
     turns_nlgeom_on(deck, "*MPC")
     for row in card.rows():
         type_ = key(row.get(0))
-        if type_ == "STRAIGHT":
-            line = TieDraft("straight", card, row.where, ready=True)
-            _on_line(line, card, row, 1)
-            deck.ties.append(line)
-            continue
         if line is not None and type_.isdecimal():
-            _on_line(line, card, row, 0)
+            line.terms += _nodes(row, 0)
             continue
         line = None
-        if type_ == "SLIDER":
-            deck.extra_fields(card, row, 4)
-            between = TieDraft("straight", card, row.where, ready=True)
-            _on_line(between, card, row, 1)
-            between.terms = [*between.terms[1:], *between.terms[:1]]
-            deck.ties.append(between)
-            continue
         if type_ == "PLANE":
             deck.note(f"{row.where}: the nodes of a planar model lie in a plane: *MPC, PLANE holds")
             continue
-        if type_ == "LINK":
-            link(deck, card, row)
-            continue
-        if type_ == "LINEAR":
-            deck.extra_fields(card, row, 4)
-            between = TieDraft("between", card, row.where, ready=True)
-            _on_line(between, card, row, 1)
-            deck.ties.append(between)
-            continue
-        if type_ not in ("BEAM", "PIN", "TIE"):
-            deck.row_error(
-                card,
-                row,
-                0,
-                f"MPC type {row.get(0)!r} is not supported",
-                "BEAM, PIN, TIE, LINK, LINEAR, STRAIGHT, SLIDER, PLANE are; or write *EQUATION, "
-                "*RIGID BODY or *COUPLING",
-            )
-            continue
-        deck.extra_fields(card, row, 3)
-        if not row.get(1) or not row.get(2):
-            deck.row_error(card, row, 1, "two nodes are expected")
-            continue
-        follows = Draft("set", card, row, row.get(1), (0.0,))
-        leads = Draft("node", card, row, row.get(2), (0.0,))
-        kind = "kinematic" if type_ == "BEAM" else "same"
-        tie = TieDraft(kind, card, row.where, [leads], follows, ready=True)
-        if type_ == "PIN":
-            tie.dofs = (0, 1)
-        deck.ties.append(tie)
+        with suppress(Refused):
+            if type_ == "LINK":
+                link(deck, card, row)
+                continue
+            tie = _mpc(row, type_)
+            deck.ties.append(tie)
+            line = tie if type_ == "STRAIGHT" else None
 
 
-def _on_line(tie: TieDraft, card: Card, row: Row, start: int) -> None:
-    """Take the nodes of a row; zeros are ignored."""
-    for i in range(start, len(row)):
-        if row.get(i) not in ("", "0"):
-            tie.terms.append(Draft("node", card, row, row.get(i), (0.0,)))
+def _mpc(row: Row, type_: str) -> TieDraft:
+    """Constraint of one line of ``*MPC``."""
+    if type_ not in MPC_KINDS:
+        row.refuse(
+            0,
+            f"MPC type {row.get(0)!r} is not supported",
+            "BEAM, PIN, TIE, LINK, LINEAR, STRAIGHT, SLIDER, PLANE are; or write *EQUATION, "
+            "*RIGID BODY or *COUPLING",
+        )
+    kind = MPC_KINDS[type_]
+    tie = TieDraft(kind, row.card, row.where, ready=True)
+    if kind in ("straight", "between"):
+        if type_ != "STRAIGHT":
+            row.at_most(4)
+        tie.terms = _nodes(row, 1)
+        if type_ == "SLIDER":
+            tie.terms = [*tie.terms[1:], *tie.terms[:1]]
+        return tie
+    row.at_most(3)
+    if not row.get(1) or not row.get(2):
+        row.refuse(1, "two nodes are expected")
+    tie.target = Draft("set", row, row.get(1), (0.0,))
+    tie.terms = [Draft("node", row, row.get(2), (0.0,))]
+    if type_ == "PIN":
+        tie.dofs = (0, 1)
+    return tie
+
+
+def _nodes(row: Row, start: int) -> list[Draft]:
+    """Nodes of a row; zeros are ignored."""
+    names = [row.get(i) for i in range(start, len(row))]
+    return [Draft("node", row, name, (0.0,)) for name in names if name not in ("", "0")]
 
 
 def transform(deck: Deck, card: Card) -> None:
     """``*TRANSFORM, NSET=, TYPE=R or C``: two points that give the axes."""
-    name = deck.required(card, "NSET")
-    type_ = deck.choice(card, "TYPE", ("R", "C"), "R")
-    rows = list(card.rows())
-    if len(rows) != 1:
-        deck.error(card, card.where, "one data line is expected: ax, ay, az, bx, by, bz")
+    name = card.required("NSET")
+    type_ = card.choice("TYPE", ("R", "C"), "R")
+    names = ("ax", "ay", "az", "bx", "by", "bz")
+    row = card.one_line(", ".join(names))
+    row.at_most(6)
+    ax, ay, az, bx, by, bz = row.reals(names, 0.0)
+    if not name:
         return
-    row = rows[0]
-    deck.extra_fields(card, row, 6)
-    numbers = [
-        deck.real(card, row, i, text, 0.0)
-        for i, text in enumerate(("ax", "ay", "az", "bx", "by", "bz"))
-    ]
-    if None in numbers or not name:
-        return
-    ax, ay, az, bx, by, bz = (float(v or 0.0) for v in numbers)
     tie = TieDraft("axes", card, card.where, ready=True)
-    tie.target = Draft("set", card, parameter_row(card, "NSET"), name, (0.0,))
+    tie.target = Draft("set", card.row_of("NSET"), name, (0.0,))
     if type_ == "C":
         if math.hypot(bx - ax, by - ay) > 1e-9 * abs(bz - az) or bz <= az:
-            deck.row_error(
-                card, row, 0, "the axis from a to b must be normal to the plane and point to +z"
-            )
-            return
+            row.refuse(0, "the axis from a to b must be normal to the plane and point to +z")
         tie.center = (ax, ay)
     else:
         cross = ax * by - ay * bx
         if math.hypot(ax, ay) == 0.0 or az != 0.0 or bz != 0.0 or cross <= 0.0:
-            deck.row_error(
-                card, row, 0, "a lies on the first axis and b left of it, both in the plane"
-            )
-            return
+            row.refuse(0, "a lies on the first axis and b left of it, both in the plane")
         tie.angle = math.atan2(ay, ax)
     deck.ties.append(tie)

@@ -12,9 +12,9 @@ from corota.model.compiled import Umat
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from corota.io.deck.card import Card
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import MaterialDraft
-    from corota.io.deck.lexer import Card
     from corota.model.materials import Material
 
 #: Constants on a data line.
@@ -23,56 +23,34 @@ PER_ROW = 8
 
 def user_material(deck: Deck, card: Card) -> None:
     """``*USER MATERIAL, CONSTANTS=``: ``PROPS`` of the subroutine UMAT."""
-    found = open_material(deck, card)
-    deck.choice(card, "TYPE", ("MECHANICAL",), "MECHANICAL")
-    count = deck.parameter_integer(card, "CONSTANTS", 0, 0)
+    open_material(deck, card)
+    card.choice("TYPE", ("MECHANICAL",), "MECHANICAL")
+    count = card.integer("CONSTANTS", 0, 0)
     values: list[float] = []
     for row in card.rows():
         for column in range(min(PER_ROW, count - len(values))):
-            value = deck.real(card, row, column, f"constant {len(values) + 1}", 0.0)
-            if value is None:
-                return
-            values.append(value)
-        deck.extra_fields(card, row, PER_ROW)
-    if found is None:
-        return
-    if found.law:
-        message = f"material {found.name} already has constants ({found.law_where})"
-        deck.error(card, card.where, message)
-        return
+            values.append(row.number(column, f"constant {len(values) + 1}", 0.0))
+        row.at_most(PER_ROW)
+    found = open_material(deck, card, new_law=True)
     found.law, found.law_where = "USERMATERIAL", card.where
     if not card.has("CONSTANTS") or len(values) < count:
-        deck.error(
-            card,
-            card.where,
-            f"CONSTANTS= is the number of constants on the data lines; there are {len(values)}",
-        )
-        return
+        text = "CONSTANTS= is the number of constants on the data lines; there are"
+        card.refuse(f"{text} {len(values)}")
     if deck.library is None:
-        deck.error(
-            card,
-            card.where,
+        card.refuse(
             f"material {found.name} is the code of a library, and no deck loads code by itself",
             hint="name a library that you trust: --allow-library PATH (Python: library=PATH)",
         )
-        return
     found.law_card, found.constants = card, [(0.0, values)]
 
 
 def depvar(deck: Deck, card: Card) -> None:
     """``*DEPVAR``: number of solution-dependent state variables."""
-    found = open_material(deck, card)
-    rows = list(card.rows())
-    if not rows:
-        deck.error(card, card.where, "a data line is missing: the number of state variables")
-        return
-    count = deck.real(card, rows[0], 0, "the number of state variables")
-    if count is None or found is None:
-        return
-    if count < 0 or count != int(count):
-        deck.row_error(card, rows[0], 0, f"a whole number >= 0 is expected, not {count:g}")
-        return
     # Further lines are names for output.
+    found, row = open_material(deck, card), card.lines("the number of state variables")[0]
+    count = row.number(0, "the number of state variables")
+    if count < 0 or count != int(count):
+        row.refuse(0, f"a whole number >= 0 is expected, not {count:g}")
     found.states = int(count)
 
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from corota.errors import InputError
+from corota.io.deck.card import Card, complete, key
 from corota.io.deck.cards.material import open_material
-from corota.io.deck.lexer import Card, key
 from corota.model.material_table import MaterialTable
 from corota.model.viscoelastic import WLF, Viscoelastic
 
@@ -21,50 +21,29 @@ def viscoelastic(deck: Deck, card: Card) -> None:
     """``*VISCOELASTIC, TIME=PRONY``: g, k and tau of each term."""
     found = open_material(deck, card)
     if key(card.value("TIME")) != "PRONY":
-        deck.error(
-            card,
-            card.at("TIME") if card.has("TIME") else card.where,
-            "viscoelasticity is given by TIME=PRONY",
-            hint="fit a Prony series to other data: rows of g, k, tau",
-        )
-        return
+        hint = "fit a Prony series to other data: rows of g, k, tau"
+        card.refuse("viscoelasticity is given by TIME=PRONY", "TIME", hint)
     rows = []
-    for row in card.rows():
-        values = [deck.real(card, row, i, name, 0.0) for i, name in enumerate(("g", "k"))]
-        tau = deck.real(card, row, 2, "tau")
-        if None in values or tau is None:
-            return
-        deck.extra_fields(card, row, 3)
-        rows.append((float(values[0] or 0.0), float(values[1] or 0.0), tau))
-    if found is None:
-        return
-    if not rows:
-        deck.error(card, card.where, "a data line is missing: g, k, tau")
-    elif found.prony_card is not None:
-        deck.error(card, card.where, f"material {found.name} already has a {card.spelled}")
-    else:
-        found.prony, found.prony_card = rows, card
+    for row in card.lines("g, k, tau"):
+        pair = [row.real(i, name, 0.0) for i, name in enumerate(("g", "k"))]
+        g, k, tau = complete([*pair, row.real(2, "tau")])
+        row.at_most(3)
+        rows.append((g, k, tau))
+    if found.prony_card is not None:
+        card.refuse(f"material {found.name} already has a {card.spelled}")
+    found.prony, found.prony_card = rows, card
 
 
 def trs(deck: Deck, card: Card) -> None:
     """``*TRS[, DEFINITION=WLF]``: the temperature of the times, C1, C2."""
     found = open_material(deck, card)
-    deck.choice(card, "DEFINITION", ("WLF",), "WLF")
-    rows = list(card.rows())
-    if found is None:
-        return
-    if len(rows) != 1:
-        deck.error(card, card.where, "one data line is expected: T0, C1, C2")
-        return
-    names = ("the temperature of the times", "C1", "C2")
-    values = [deck.real(card, rows[0], i, name) for i, name in enumerate(names)]
-    if any(v is None for v in values):
-        return
-    at, c1, c2 = (float(v or 0.0) for v in values)
+    card.choice("DEFINITION", ("WLF",), "WLF")
+    row = card.one_line("T0, C1, C2")
+    at, c1, c2 = row.reals(("the temperature of the times", "C1", "C2"))
     try:
         found.shift = WLF(c1, c2, at)
     except InputError as error:
-        deck.row_error(card, rows[0], 1, error.message)
+        row.error(1, error.message)
 
 
 def build_viscoelastic(

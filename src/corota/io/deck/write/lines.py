@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import UnsupportedError
-from corota.io.deck.cards.lines import PLANAR
+from corota.io.deck.drafts import PLANAR
 from corota.model.materials import Elastic
 from corota.profiles import RECTANGLE, rectangle
 
