@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 import pytest
 
-from corota.analysis.terms.contact.pivoting import lemke
+from corota.analysis.terms.contact.pivoting import from_basis, lemke
 
 
 def enumerated(c, m):
@@ -34,6 +34,23 @@ def test_the_solution_of_a_positive_matrix_is_that_of_enumeration(seed):
     (only,) = enumerated(c, m)
     np.testing.assert_allclose(x, only, atol=1e-8 * (1.0 + np.abs(only).max()))
     assert (x[~basic] == 0.0).all()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_from_any_basis_the_solution_is_the_same(seed):
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 30))
+    a = rng.normal(size=(n, n))
+    m, c = a @ a.T + 0.1 * np.eye(n) + 0.3 * (a - a.T), rng.normal(size=n)
+    x, basic = lemke(c, m)
+    again, same = from_basis(c, m, rng.random(n) < 0.5)
+    np.testing.assert_allclose(again, x, atol=1e-8 * (1.0 + x.max()))
+    assert (same == basic).all()
+
+
+def test_from_a_singular_basis_there_is_none():
+    m = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    assert from_basis(np.array([-1.0, 1.0]), m, np.array([True, False])) is None
 
 
 def friction(c, m, mu):

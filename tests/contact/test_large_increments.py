@@ -112,6 +112,38 @@ def test_a_rope_over_half_a_drum_slips_one_way_from_the_first_correction(
     assert increments == 1
 
 
+@pytest.mark.parametrize(
+    ("element", "degrees", "edges", "mu", "increments"),
+    [
+        ("Q4I", 180.0, 60, 0.3, 1),
+        ("Q4I", 270.0, 180, 0.3, 1),
+        ("Q8R", 175.0, 58, 0.11, 7),
+        ("Q8R", 270.0, 90, 0.3, 1),
+    ],
+)
+def test_a_strip_of_many_edges_is_drawn_around_a_drum_in_few_iterations(
+    element: str, degrees: float, edges: int, mu: float, increments: int
+) -> None:
+    """Each node that sticks takes the whole load: states chosen one by one advance by a node in
+    each iteration."""
+    cell = "quad8" if element == "Q8R" else "quad4"
+    mesh = ct.mesh.annulus(1.0, 1.02, 1, edges, angle=degrees, cell=cell)
+    wheel = ct.mesh.add_node(mesh, 0.0, 0.0, "wheel")
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=1e6, nu=0.0))
+    model.rigid("end", wheel)
+    model.contact("inner", ct.RigidCurve.circle((0.0, 0.0), 1.0), friction=mu, method="mortar")
+    step = ct.Static() if increments == 1 else ct.Static(increments=increments)
+    step.traction("start", y=-1.0 / 0.02)
+    step.fix("wheel", x=0.0, y=0.0, rotation=0.03)
+    results = solve(model, step)
+    tension = results.frames[-1].RF[wheel, 2] / 1.01
+    exact = math.exp(mu * math.radians(degrees) / 1.01)
+    assert tension == pytest.approx(exact, rel=0.01)
+    assert len(results.frames) - 1 == increments
+    assert max(frame.scalars["iterations"] for frame in results.frames[1:]) <= 5
+
+
 @pytest.mark.parametrize("element", ["beam", "OPT"])
 def test_a_node_a_whole_turn_off_its_neighbors_is_refused(element: str) -> None:
     """No element has a force then. A body that turns whole turns is accepted."""

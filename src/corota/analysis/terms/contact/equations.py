@@ -88,18 +88,29 @@ class ContactEquations(ContactProblem):
             corrected = along_kink(self, at, right_sides)
             if corrected is not None:
                 return corrected
-        self.pivoting = self.pivoting or self.waited >= WAITED
-        if self.pivoting and not self.settles(at):
+        before = self.pivoting = self.pivoting or self.waited >= WAITED
+        z = None
+        if before and not self.settles(at):
             self.freeze()
-            found = pivoted(self, at, right_sides)
-            if found is not None:
-                z, self.last, self.slip_directions = found
-                self.pivoted += 1
-                self.stage = "contact states by pivoting"
-                return self.moved(z), -1
-        z, negative = self.columns(at, right_sides, self.chosen(at.contact_state))
-        self.stage = ""
-        return self.moved(z[:, 0]), -1 if self.pivoting else negative
+            z = self._by_pivoting(at, right_sides)
+        if z is None:
+            columns, negative = self.columns(at, right_sides, self.chosen(at.contact_state))
+            z, self.stage = columns[:, 0], ""
+            if self.pivoting and not before:
+                # States chosen one by one did not come to an end.
+                found = self._by_pivoting(at, right_sides)
+                z = z if found is None else found
+        return self.moved(z), -1 if self.pivoting else negative
+
+    def _by_pivoting(self, at: Evaluation, right_sides: RightHandSides) -> Floats | None:
+        """A correction with states from the whole linearized problem; None if there is none."""
+        found = pivoted(self, at, right_sides)
+        if found is None:
+            return None
+        z, self.last, self.slip_directions = found
+        self.pivoted += 1
+        self.stage = "contact states by pivoting"
+        return z
 
     def settles(self, at: Evaluation) -> bool:
         """Whether pivoting has found the states, and only digits are missing.

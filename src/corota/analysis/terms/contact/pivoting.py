@@ -122,9 +122,37 @@ def _leaving(table: Floats, column: Floats, able: Ints, base: Ints, others: Ints
     return int(tied[np.argmax(column[tied])])
 
 
+def from_basis(c: Floats, m: Floats, start: Bools) -> tuple[Floats, Bools] | None:
+    """Solution of the same problem by Lemke's method from a basis with the x of `start`.
+
+    Block principal pivoting exchanges these x and their y. None also if that basis is singular.
+
+    Parameters
+    ----------
+    start : ndarray of bool, shape (n,)
+    """
+    exchange = -m[start]
+    exchange[:, start] = np.eye(len(exchange))
+    try:
+        rows = np.linalg.solve(m[np.ix_(start, start)], exchange)
+    except np.linalg.LinAlgError:
+        return None
+    first = np.zeros_like(c)
+    first[start] = -rows[:, start] @ c[start]
+    turned = np.where(start, 0.0, m)
+    turned[~start] += m[np.ix_(~start, start)] @ rows
+    turned[start] = rows
+    found = lemke(np.where(start, first, c + m @ first), turned)
+    if found is None:
+        return None
+    basic = start ^ found[1]
+    x = np.where(start, first + turned @ found[0], found[0])
+    return np.where(basic, np.maximum(x, 0.0), 0.0), basic
+
+
 #: Size of the linear complementarity problem: most constraints (its cost grows with the cube); a
 #: tenth of them may be open ones from the start.
-MOST = 160
+MOST = 500
 
 
 @dataclass
@@ -272,8 +300,26 @@ class Pivoting:
                 np.column_stack([np.zeros(len(rows)), rows]),
             ),
         )
+        driven = self._driven(base)
+        if driven is not None:
+            return self._with(driven, chosen)
         values = [self._values(base, c, slip_directions[c.k], du, dp) for c in chosen]
         return self._pivoted(base, chosen, slip_directions, values, du, dp, n)
+
+    def _driven(self, base: States) -> States | None:
+        """A basis in which slips what supports move over the surface; None if nothing of it sticks.
+
+        No traction can hold it, so that its constraint was taken out of the solution.
+        """
+        border, out = self.problem.border, [s.copy() for s in base]
+        for s, (pair, _, _) in zip(out, self.pairs, strict=True):
+            if pair.rubs:
+                own = slice(pair.first + pair.n, pair.first + pair.width)
+                left = np.abs(border.left[own]) + np.abs(border.left_by_others[own])
+                moved = np.flatnonzero((s == CLOSED) & (left > pair.noise))
+                s[moved] = SLIPPING
+                border.dropped.difference_update((own.start + moved).tolist())
+        return None if all(map(np.array_equal, out, base)) else out
 
     def _inputs(
         self, base: States, chosen: list[Chosen], slip_directions: list[Floats]
@@ -399,6 +445,8 @@ class Pivoting:
             if kind == "along":
                 m[a, a + 1] += 1.0  # the slip against the traction is one of two that differ
         found = lemke(y[:, 0], m)
+        if found is None and self.problem.slides:
+            found = from_basis(y[:, 0], m, _sliding(y[:, 0], m, kinds))
         if found is None:
             return None
         x, basic = found
@@ -490,7 +538,20 @@ def pivoted(problem: ContactProblem, at: Evaluation, right_sides: RightHandSides
     for base in bases:
         for s, (pair, terms, _) in zip(base, pairs, strict=True):
             s[~covered(terms.area, pair.full)] = OPEN
+    key = [b"".join(s.tobytes() for s in base) for base in bases]
+    bases = [base for i, base in enumerate(bases) if key[i] not in key[:i]]
     return Pivoting(problem, at, right_sides).solve(bases)
+
+
+def _sliding(c: Floats, m: Floats, kinds: list[tuple[int, int, str]]) -> Bools:
+    """The basis in which what sticks slips the way it would without shear tractions."""
+    names = np.array([kind for _, _, kind in kinds])
+    forth, back = np.flatnonzero(names == "forth"), np.flatnonzero(names == "back")
+    shear, by_slip = 0.5 * (c[forth] - c[back]), 0.5 * (m[forth] - m[back])[:, forth]
+    slip = -np.linalg.lstsq(by_slip, shear)[0]
+    out = np.zeros(len(c), bool)
+    out[forth], out[back] = slip > 0.0, slip < 0.0
+    return out
 
 
 def _small(problem: ContactProblem) -> float:

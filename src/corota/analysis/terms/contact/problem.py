@@ -110,6 +110,8 @@ class ContactProblem:
         self.sliding = self.corrections = self.pivoted = 0
         #: Whether states come from the whole linearized problem.
         self.pivoting = False
+        #: Whether constraints were released one after the other without an end.
+        self.slides = False
         #: Residual of the last iterate, the least one, and iterations without progress.
         self.size, self.least, self.waited = np.inf, np.inf, 0
         #: How the last correction was found.
@@ -353,6 +355,9 @@ class ContactProblem:
                 self.slip_directions = before
                 break
             found, states = other, new
+        else:
+            # One release overloads the next constraint, as along a rope.
+            self.pivoting = self.slides = True
         return found, states
 
     def _far(self, du: Floats, right_sides: RightHandSides) -> bool:
