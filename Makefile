@@ -18,6 +18,7 @@ CORE_SOURCES := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -type f 2
 CARGO := --release --locked
 # The tests run in seconds; optimized, they would build for minutes. Unoptimized frames are large.
 UNOPTIMIZED := --config 'profile.release.package.corota.opt-level=0'
+CARGO_TEST := RUST_MIN_STACK=67108864 cargo test --quiet $(CARGO) $(UNOPTIMIZED) --jobs $(JOBS)
 WITH_PYTHON := --features python,pyo3/extension-module
 # Python compiles the modules that are used when they are imported first.
 INSTALL := $(BIN)/python -m pip install --quiet --no-compile --require-hashes
@@ -29,8 +30,8 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python test-slow test-view test-mesh test-optimize test-petsc lint lint-python clippy \
-	format bench docs check-site wheel try-wheel meshes lock clean
+.PHONY: help core setup demo test test-rust test-python test-slow test-view test-mesh test-optimize test-petsc lint lint-python \
+	clippy format bench docs check-site wheel try-wheel meshes lock clean
 
 help: ## Say what the targets do
 	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' Makefile | awk -F'|' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -60,9 +61,11 @@ $(CORE): $(COMPILED) $(RUNTIME)
 	@$(BIN)/maturin develop --quiet $(CARGO) --jobs $(JOBS)
 	@touch $@
 
+core: $(CORE)
+
 # Packages are fetched while the core compiles.
 setup: ## Make the environment and build the compute core
-	@$(MAKE) --no-print-directory --jobs 2 $(CORE)
+	@$(MAKE) --no-print-directory --jobs 2 core
 
 demo: setup ## Run the compliant gripper: progress, files and a picture
 	@$(BIN)/python examples/gripper/gripper.py --output $(RESULTS)/gripper
@@ -72,12 +75,13 @@ test: ## Set up everything and run the tests but for slow ones
 	@$(MAKE) test-python
 
 test-rust: $(DEPS)
-	RUST_MIN_STACK=67108864 cargo test --quiet $(CARGO) $(UNOPTIMIZED) --jobs $(JOBS)
+	$(CARGO_TEST)
 
 test-python: $(CORE) $(DEPS)
 	$(BIN)/python -m pytest -n $(JOBS)
 
 test-slow: $(CORE) $(DEPS) ## Run the slow tests: full products of cases, long examples
+	$(CARGO_TEST) -- --ignored
 	$(BIN)/python -m pytest -n $(JOBS) -m slow
 
 VIEW := $(VENV)/.stamp-view
