@@ -30,6 +30,12 @@ def pytest_collection_finish() -> None:
     gc.enable()
 
 
+@pytest.fixture
+def quick_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw without fitting the texts: half of the time of a picture, and `test_pictures_fit`'s."""
+    monkeypatch.setattr("corota.plots.figure.fit_texts", lambda figure: None)
+
+
 @pytest.fixture(autouse=True)
 def close_figures() -> Iterator[None]:
     """Close what a test has drawn: matplotlib warns when a process keeps more than 20 figures."""

@@ -418,6 +418,7 @@ def test_a_deck_lowers_a_beam_onto_a_pin(tmp_path, surface, half):
 
 
 @pytest.mark.parametrize("slave", ["a", "tip"])
+@pytest.mark.usefixtures("quick_pictures")
 def test_lines_and_nodes_are_in_result_files_and_pictures(tmp_path, slave):
     mesh = lines(straight(0.0, SPAN, 10))
     mesh.node_sets["tip"] = np.array([10, 9])

@@ -47,6 +47,7 @@ def programs(page: Path) -> str:
     return "\n".join(BLOCK.findall(page.read_text(encoding="utf-8")))
 
 
+@pytest.mark.usefixtures("quick_pictures")
 @pytest.mark.parametrize(
     "page",
     [

@@ -29,6 +29,7 @@ def test_there_are_seven() -> None:
 LONG = ("02_snap_fit", "05_impact")
 
 
+@pytest.mark.usefixtures("quick_pictures")
 @pytest.mark.parametrize(
     "path",
     [pytest.param(p, marks=[pytest.mark.slow] if p.stem in LONG else []) for p in NOTEBOOKS],

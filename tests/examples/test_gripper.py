@@ -78,6 +78,7 @@ def test_deck_gives_the_same_result(examples: Path, closed: ct.Results) -> None:
     np.testing.assert_allclose(tip(results, "tip_upper"), tip(closed, "tip_upper"), rtol=1e-6)
 
 
+@pytest.mark.usefixtures("quick_pictures")
 def test_demo_writes_files_and_pictures(load: Load, tmp_path: Path, capsys) -> None:
     load("gripper/gripper.py").main(["--output", str(tmp_path), "--pull", "0.2"])
     said = capsys.readouterr().out

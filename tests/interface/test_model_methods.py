@@ -53,6 +53,7 @@ def test_contact_surfaces_count_as_used(model: ct.Model) -> None:
     assert "top" not in notes.split("unused sets")[1]
 
 
+@pytest.mark.usefixtures("quick_pictures")
 def test_results_and_models_draw_themselves(model: ct.Model, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     results = ct.solve(model, ct.Static(), threads=1)

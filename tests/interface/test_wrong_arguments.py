@@ -58,6 +58,7 @@ def test_a_surface_is_not_tied_to_itself():
         strip().tie("right", "right")
 
 
+@pytest.mark.usefixtures("quick_pictures")
 def test_dollar_signs_in_names_are_drawn(tmp_path):
     mesh = ct.mesh.rectangle(2.0, 1.0, nx=4, ny=2)
     model = ct.Model(mesh, name="cost $\\frac{")

@@ -274,6 +274,7 @@ def test_convert_writes_meshes_as_decks(tmp_path, here):
     assert here("convert", DECK, tmp_path / "b.med").returncode == 2
 
 
+@pytest.mark.usefixtures("quick_pictures")
 def test_plot_draws_pictures(tmp_path, here, monkeypatch):
     monkeypatch.chdir(tmp_path)
     here("run", DECK, "-o", tmp_path, "-q")

@@ -52,6 +52,7 @@ def test_rigid_curves_move_with_their_node(results: ct.Results) -> None:
     assert angle == pytest.approx(0.25)
 
 
+@pytest.mark.usefixtures("quick_pictures")
 def test_pictures_from_a_result_file(results: ct.Results, tmp_path: Path) -> None:
     path = results.write(tmp_path / "pressed.vtkhdf")
     with read_results(path) as stored:

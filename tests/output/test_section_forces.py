@@ -333,6 +333,7 @@ def test_a_cut_through_a_bent_beam_balances():
     assert pytest.approx(members.M[4].mean(), rel=1e-6) == cut.M
 
 
+@pytest.mark.usefixtures("quick_pictures")
 def test_history_and_pictures(tmp_path):
     results = cantilever(force=-0.3, increments=3)
     history = results.section_history("M", (4.0, 0.0), (4.0, 1.0))

@@ -46,6 +46,7 @@ def test_results_without_modes_say_so() -> None:
         as_results(results)
 
 
+@pytest.mark.usefixtures("quick_pictures")
 def test_beams_are_in_files_and_pictures(tmp_path: Path) -> None:
     model, node = lee_frame(5)
     model.name = "lee"

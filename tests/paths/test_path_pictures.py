@@ -31,6 +31,7 @@ def test_unstable_branches_are_dashed_and_limit_points_marked(toggle, tmp_path):
     assert (tmp_path / "path.svg").stat().st_size > 1000
 
 
+@pytest.mark.usefixtures("quick_pictures")
 def test_stored_results_give_the_same_picture(toggle, tmp_path):
     results, apex = toggle
     results.write(tmp_path / "toggle.vtkhdf")

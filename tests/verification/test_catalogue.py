@@ -87,6 +87,7 @@ def test_names_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixture
     assert "--list" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("quick_pictures")
 def test_pages_are_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("matplotlib")
     assert main(["verify", "curved_beam", "--full", "--pages", str(tmp_path), "--jobs", "1"]) == 0
