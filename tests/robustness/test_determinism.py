@@ -52,8 +52,8 @@ def test_surroundings_do_not_matter(tmp_path):
     """Language, time zone, hash seed, threads of BLAS and folder, through the command."""
     surroundings = [
         {"LC_ALL": "C", "TZ": "UTC", "PYTHONHASHSEED": "0"},
-        {"LC_ALL": "de_DE.UTF-8", "LANG": "tr_TR.UTF-8", "TZ": "Asia/Kathmandu"},
-        {"PYTHONHASHSEED": "4711", "PYTHONOPTIMIZE": "1", "OPENBLAS_NUM_THREADS": "3"},
+        {"LC_ALL": "de_DE.UTF-8", "LANG": "tr_TR.UTF-8", "TZ": "Asia/Kathmandu"}
+        | {"PYTHONHASHSEED": "4711", "PYTHONOPTIMIZE": "1", "OPENBLAS_NUM_THREADS": "3"},
         {"PYTHONHASHSEED": "1", "PYTHONUTF8": "0", "LC_ALL": "POSIX"},
     ]
     runs = []
@@ -68,7 +68,7 @@ def test_surroundings_do_not_matter(tmp_path):
                 env=os.environ | more,
             )
         )
-    assert [run.wait(120) for run in runs] == [0, 0, 0, 0]
+    assert [run.wait(120) for run in runs] == [0, 0, 0]
     first, *others = [folder / "out" for folder in sorted(tmp_path.iterdir())]
     for other in others:
         assert folder_differences(first, other) == []

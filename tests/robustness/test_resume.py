@@ -23,6 +23,7 @@ from corota.analysis.run import solve
 from corota.errors import FileError
 from corota.io.checkpoint import load, newest
 from corota.io.folder_lock import FolderLock
+from support.checkpoints import goes_on
 from support.pairs import quickly
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")
@@ -121,20 +122,7 @@ QUICK = {
 
 @pytest.mark.parametrize("name", QUICK)
 def test_every_increment_goes_on_to_the_same_bits(name):
-    takes = Takes()
-    whole = solve(QUICK[name](), observers=[takes], threads=1)
-    assert takes.found
-    for checkpoint in takes.found:
-        rest = solve(QUICK[name](), threads=1, start=checkpoint)
-        behind = [
-            f
-            for f in whole.frames
-            if (f.step, f.increment) > (checkpoint.step, checkpoint.increment)
-        ]
-        assert len(rest.frames) == len(behind)
-        for a, b in zip(behind, rest.frames, strict=True):
-            assert not frame_differences(a, b), checkpoint.where
-        assert rest.notes == whole.notes
+    goes_on(QUICK[name])
 
 
 def test_checkpoint_of_another_model_is_refused():
