@@ -32,7 +32,7 @@ def test_point_masses_give_the_frequency_of_an_oscillator():
     assert found.max() == pytest.approx(np.sqrt(100.0 / 4.0) / (2.0 * np.pi), rel=1e-6)
 
 
-def oscillator(scheme, c=0.0, rayleigh=(0.0, 0.0), between=False, n=400):
+def oscillator(scheme, c=0.0, rayleigh=(0.0, 0.0), between=False, n=200):
     model = bar()
     model.point_mass("right", 2.0)
     model.force("right", x=0.05, per_node=True)
@@ -45,7 +45,7 @@ def oscillator(scheme, c=0.0, rayleigh=(0.0, 0.0), between=False, n=400):
             model.dashpot(int(node), x=0.5 * c)
     results = run(
         model,
-        period=2.0,
+        period=1.0,
         increments=n,
         scheme=scheme,
         rayleigh=rayleigh,
@@ -64,7 +64,7 @@ def exact(time, zeta, omega=5.0, static=0.001):
     return static * (1.0 - decay * wave)
 
 
-TIME = np.linspace(0.0, 2.0, 401)[1:]
+TIME = np.linspace(0.0, 1.0, 201)[1:]
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -83,7 +83,7 @@ def test_an_equation_joins_as_a_common_node_does():
 
 def test_a_rigid_end_moves_as_with_an_implicit_scheme():
     def tip(**keys):
-        mesh = with_nodes(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=2), (12.0, 0.5))
+        mesh = with_nodes(ct.mesh.rectangle(10.0, 1.0, nx=5, ny=1), (12.0, 0.5))
         model = ct.Model(mesh)
         model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3, rho=1.0))
         end = mesh.n_nodes - 1
@@ -94,7 +94,7 @@ def test_a_rigid_end_moves_as_with_an_implicit_scheme():
         return ct.solve(model, ct.Dynamic(period=1.0, **keys), threads=1).frames[-1].U[end]
 
     explicit = tip(scheme=SCHEME)
-    implicit = tip(scheme="newmark", mass="lumped", increments=1000)
+    implicit = tip(scheme="newmark", mass="lumped", increments=500)
     assert np.abs(explicit).max() > 0.05
     assert explicit == pytest.approx(implicit, rel=2e-3, abs=1e-5)
 

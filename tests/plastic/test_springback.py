@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 import corota as ct
+from support.pairs import cover
 
 LENGTH, HEIGHT, E, FLOW, TURN = 40.0, 2.0, 200e3, 400.0, 0.4
 
@@ -27,9 +28,9 @@ def bent(element: str, increments: int, nlgeom: bool, **law: Any) -> ct.Results:
     return ct.solve(model, [bend, free])
 
 
-@pytest.mark.parametrize("element", ["Q4I", "Q4S", "Q8R", "Q4D"])
-@pytest.mark.parametrize("increments", [1, 5])
-@pytest.mark.parametrize("nlgeom", [True, False])
+@pytest.mark.parametrize(
+    ("element", "increments", "nlgeom"), cover(["Q4I", "Q4S", "Q8R", "Q4D"], [1, 5], [True, False])
+)
 def test_angle_after_the_release(element: str, increments: int, nlgeom: bool) -> None:
     results = bent(element, increments, nlgeom)
     ratio = 2.0 * FLOW * LENGTH / (E * HEIGHT * TURN)
