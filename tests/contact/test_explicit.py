@@ -388,6 +388,10 @@ def test_held_surfaces_that_are_pressed_together_are_named():
 # -- the set of what is closed --------------------------------------------------------
 
 
+def without_law(m):
+    return np.zeros(m, bool), lambda gap: (np.zeros(m), np.zeros(m))
+
+
 def random_constraints(rng, m, tangents, friction):
     of = np.arange(m)[:tangents]
     g = rng.standard_normal((m + tangents, 2 * m + 3))
@@ -401,6 +405,7 @@ def random_constraints(rng, m, tangents, friction):
         np.full(m, 1e-12),
         np.zeros(m),
         np.ones(m),
+        *without_law(m),
     )
 
 
@@ -417,21 +422,37 @@ def holds(problem, z, state):
     return all(np.all(g) for g in good)
 
 
-@pytest.mark.parametrize("sweeps", [False, True])
-def test_forces_fulfil_signorini_and_coulomb(sweeps):
+@pytest.mark.parametrize("together", [False, True])
+def test_forces_fulfil_signorini_and_coulomb(together, monkeypatch):
+    if together:  # what Newton's method on the set leaves
+        monkeypatch.setattr(UnilateralConstraints, "_newton", lambda *_: None)
     rng = np.random.default_rng(1)
     for m, tangents in [(1, 0), (1, 1), (3, 0), (4, 4), (8, 5), (12, 12)]:
         for _ in range(20):
             problem = random_constraints(rng, m, tangents, 0.3)
-            if sweeps:
-                z = problem._sweep()
-                assert z is not None
-                state = problem._read(z)[0]
-            else:
-                found = problem.solve(np.full(m, OPEN, np.int8), np.ones(tangents))
-                assert found is not None
-                z, state, _ = found
+            found = problem.solve(np.full(m, OPEN, np.int8), np.ones(tangents))
+            assert found is not None
+            z, state, _ = found
             assert holds(problem, z, state)
+
+
+def test_ties_and_laws_have_the_same_forces_by_both_methods():
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        problem = random_constraints(rng, 8, 5, 0.3)
+        problem.tied[:2] = True
+        problem.soft, problem.share = problem.gap, np.full(8, 0.5)
+        stiff = rng.uniform(0.5, 2.0)
+
+        def law(gap, stiff=stiff):
+            deep = np.where(np.arange(8) < 5, 0.0, np.maximum(0.1 - gap, 0.0))
+            return stiff * deep * (1.0 + deep), -stiff * (1.0 + 2.0 * deep) * (deep > 0.0)
+
+        problem.ruled[5:], problem.law = True, law
+        found, z = problem._newton(np.full(8, OPEN, np.int8), np.ones(5)), problem._pivoted()
+        assert found is not None
+        assert z is not None
+        assert np.allclose(z, found[0], rtol=1e-7, atol=1e-8)
 
 
 def test_frictionless_forces_are_those_of_every_set_tried():
@@ -462,6 +483,7 @@ def test_dependent_constraints_share_their_force():
         np.full(2, 1e-12),
         np.zeros(2),
         np.ones(2),
+        *without_law(2),
     )
     z, state, _ = problem.solve(np.full(2, OPEN, np.int8), np.ones(0))
     assert z.sum() == pytest.approx(1.0, rel=1e-8)

@@ -7,7 +7,7 @@ import pytest
 import corota as ct
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
-from corota.analysis.terms.contact.equations import ContactEquations
+from corota.analysis.terms.contact.equations import ContactEquations, linearized
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.analysis.terms.contact.path import ContactPathEquations
 from corota.model.contact import METHODS
@@ -70,7 +70,7 @@ def test_rows_and_columns_are_derivatives(method, law):
         up, down = equations(z + STEP * dz), equations(z - STEP * dz)
         return tuple((a - b) / (2.0 * STEP) for a, b in zip(up, down, strict=True))
 
-    coupling, *_ = self.coupling(at.contact_state, states)
+    coupling, *_ = linearized(self.term, at.contact_state, states, self.slip_directions)
     dz = rng.standard_normal(n + m)
     du, dp = dz[:n], dz[n:]
     force, rows = np.zeros(n), coupling.diagonal * dp

@@ -9,7 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 import corota as ct
-from corota.mesh.parts import _components, part_of_cells, part_of_nodes
+from corota.mesh.parts import components, part_of_cells, part_of_nodes
 
 
 @pytest.mark.parametrize("edges", [0, 1, 30, 80, 200])
@@ -20,12 +20,12 @@ def test_parts_of_graphs_are_those_of_scipy(edges: int) -> None:
         a, b = rng.integers(0, 100, (2, edges))
         graph = coo_array((np.ones(edges), (a, b)), shape=(100, 100))
         expected = connected_components(graph, directed=False)[1]
-        np.testing.assert_array_equal(_components(a, b, 100), expected)
+        np.testing.assert_array_equal(components(a, b, 100), expected)
 
 
 def test_a_long_chain_in_any_order_is_one_part() -> None:
     order = np.random.default_rng(1).permutation(5000)
-    assert not _components(order[:-1], order[1:], 5000).any()
+    assert not components(order[:-1], order[1:], 5000).any()
 
 
 def test_nodes_without_cells_have_no_part() -> None:

@@ -17,8 +17,14 @@ from scipy.sparse.linalg import lsqr
 
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import ContactEquations
-from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SLIPPING, ContactState, covered
-from corota.analysis.terms.contact.problem import RightHandSides
+from corota.analysis.terms.contact.gaps import (
+    CLOSED,
+    OPEN,
+    SLIPPING,
+    ContactState,
+    RightHandSides,
+    covered,
+)
 from corota.errors import UnsupportedError
 
 if TYPE_CHECKING:

@@ -37,13 +37,13 @@ def part_of_cells(mesh: Mesh) -> Ints:
     """Number the parts connected by common nodes; shape (n_cells,)."""
     nodes, cells = _incidence(mesh)
     total = mesh.n_nodes + mesh.n_cells
-    return _components(nodes, cells + mesh.n_nodes, total)[mesh.n_nodes :]
+    return components(nodes, cells + mesh.n_nodes, total)[mesh.n_nodes :]
 
 
 def part_of_nodes(mesh: Mesh) -> Ints:
     """Number the parts connected by common nodes; shape (n_nodes,), -1 without cells."""
     nodes, cells = _incidence(mesh)
-    part = _components(nodes, cells + mesh.n_nodes, mesh.n_nodes + mesh.n_cells)
+    part = components(nodes, cells + mesh.n_nodes, mesh.n_nodes + mesh.n_cells)
     out = np.full(mesh.n_nodes, -1, np.int64)
     out[nodes] = part[nodes]
     return out
@@ -60,7 +60,7 @@ def stiff_part_of_cells(mesh: Mesh) -> Ints:
     key, row = np.concatenate(keys), np.concatenate(rows)
     order = np.argsort(key, kind="stable")
     same = np.flatnonzero(np.diff(key[order]) == 0)
-    return _components(row[order[same]], row[order[same + 1]], mesh.n_cells)
+    return components(row[order[same]], row[order[same + 1]], mesh.n_cells)
 
 
 def parts_without(mesh: Mesh, without: Bools) -> Ints:
@@ -68,7 +68,7 @@ def parts_without(mesh: Mesh, without: Bools) -> Ints:
     nodes, cells = _incidence(mesh)
     kept = ~without[cells]
     total = mesh.n_nodes + mesh.n_cells
-    return _components(nodes[kept], cells[kept] + mesh.n_nodes, total)[: mesh.n_nodes]
+    return components(nodes[kept], cells[kept] + mesh.n_nodes, total)[: mesh.n_nodes]
 
 
 def _incidence(mesh: Mesh) -> tuple[Ints, Ints]:
@@ -79,7 +79,7 @@ def _incidence(mesh: Mesh) -> tuple[Ints, Ints]:
     return np.concatenate(nodes), np.concatenate(cells)
 
 
-def _components(a: Ints, b: Ints, total: int) -> Ints:
+def components(a: Ints, b: Ints, total: int) -> Ints:
     """Number the parts connected by edges from `a` to `b`, in the order of their first members.
 
     Each pass joins the trees of connected members to the one with the smaller root, and then lets

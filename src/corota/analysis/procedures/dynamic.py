@@ -23,8 +23,7 @@ from corota.analysis.procedures.motion_start import (
     resting,
     start_motion,
 )
-from corota.analysis.terms.contact.impact import Approach
-from corota.analysis.terms.contact.newton import solve_increment
+from corota.analysis.terms.contact.newton import Approach, solve_increment
 from corota.analysis.terms.contact.relaxation import relax
 from corota.analysis.terms.damping import Damping
 from corota.analysis.terms.inertia import Inertia, MotionState

@@ -15,7 +15,7 @@ from corota.analysis.numbered_model import Role
 from corota.analysis.procedures.explicit_constraints import FreeMass, ReducedMass, mass_of
 from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.rule import AtVelocity
-from corota.analysis.terms.contact.forward import forward_contact
+from corota.analysis.terms.contact.forward import ForwardContact
 from corota.analysis.terms.damping import material_pairs
 from corota.analysis.terms.inertia import Inertia
 from corota.errors import ConvergenceError, InputError, ModelError
@@ -191,7 +191,7 @@ class ExplicitStepper(Stepper):
         self.at = system.evaluate(self.u, 0.0, CentralDifference(state.v))
         self.idle = self.moved.idle
         self.account = account = state.energies
-        self.contact = forward_contact(system, account, dt)
+        self.contact = ForwardContact(system, account, dt)
         if not resumes:
             _refuse_pushed(system, self.idle, self.at)
             system.constraints.complete_rates(self.u, state.v)

@@ -20,21 +20,25 @@ from corota.analysis.linear.factor import Factor
 from corota.analysis.linear.triplets import Triplets, nonempty_columns
 from corota.analysis.terms.attachments import Attachments
 from corota.analysis.terms.contact.gaps import COMPLIANCE
-from corota.analysis.terms.contact.problem import linearized_contact
 from corota.analysis.terms.damping import damping_matrix
 from corota.analysis.terms.inertia import Inertia
 from corota.errors import SingularError, UnsupportedError
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.coupling import Coupling
     from corota.analysis.linear.types import Kind, Sparse
     from corota.arrays import Floats, Ints
 
+    LinearizedContact = tuple[Evaluation, Coupling, Floats, list[NDArray[np.int8]], Ints]
     #: Rows, columns and values.
     Entries = tuple[Ints, Ints, Floats]
+
+linearized_contact = lazy("corota.analysis.terms.contact.equations:linearized_contact")
 
 #: Skew part of a stiffness, relative to its largest entry, that is rounding.
 SKEW = 1e-9
@@ -87,9 +91,10 @@ class Linearized:
         self._normal: SuperLU | None = None
         loads = system.conditions.as_reached() if time is None else nullcontext()
         with loads, system.elements.unloading(u):
-            self.at, coupling, self.residuals, self.states, self._laws = linearized_contact(
+            found: LinearizedContact = linearized_contact(
                 system, u, multipliers, states, time or 0.0
             )
+        self.at, coupling, self.residuals, self.states, self._laws = found
         self.multipliers = self.at.contact_state.multipliers
         self.link = self.at.link
         self.free = system.constraints.free

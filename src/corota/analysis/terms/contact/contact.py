@@ -49,16 +49,16 @@ if TYPE_CHECKING:
 
 # Parts that models without contact do not need.
 check_side = lazy("corota.analysis.terms.contact.tunneling:check_side")
-guided_round_note = lazy("corota.analysis.terms.contact.messages:guided_round_note")
+guided_round_note = lazy("corota.analysis.terms.contact.output:guided_round_note")
 contact_output = lazy("corota.analysis.terms.contact.output:output")
-what_gives_way = lazy("corota.analysis.terms.contact.messages:gives_way")
+what_gives_way = lazy("corota.analysis.terms.contact.output:gives_way")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 near_side = lazy("corota.analysis.terms.contact.kinks:near_side")
 passed_through = lazy("corota.analysis.terms.contact.tunneling:passed_through")
-facet_note = lazy("corota.analysis.terms.contact.messages:facet_note")
-start_notes = lazy("corota.analysis.terms.contact.messages:start_notes")
-sunk_between = lazy("corota.analysis.terms.contact.messages:sunk_between")
-sunk_corner = lazy("corota.analysis.terms.contact.messages:sunk_corner")
+facet_note = lazy("corota.analysis.terms.contact.output:facet_note")
+start_notes = lazy("corota.analysis.terms.contact.output:start_notes")
+sunk_between = lazy("corota.analysis.terms.contact.output:sunk_between")
+sunk_corner = lazy("corota.analysis.terms.contact.output:sunk_corner")
 
 #: Procedures that support contact and ties between surfaces.
 WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
@@ -508,7 +508,7 @@ class ContactTerm(Term):
         if len(self.fading):
             state.force = state.force + max(1.0 - step_time / self.period, 0.0) * self.fading
         if len(self.law_force):
-            now = self._forces_of_laws(found, multipliers)
+            now = self.forces(found, multipliers, shears=False, laws=True)[0]
             state.of_end = state.force + (1.0 - self.law_share) * now
             state.force = state.force + (1.0 - self.law_share) * self.law_force
         return state
@@ -517,29 +517,26 @@ class ContactTerm(Term):
         """Weight of the tractions at the end in the equation of an increment."""
         return 1.0 if pair.law is None else self.law_share
 
-    def _forces_of_laws(self, terms: list[Terms], multipliers: Floats) -> Floats:
-        """Pressures of the pairs with a law on the nodes, shape (n_dofs,)."""
-        laws = [pair.law is not None for pair in self.pairs]
-        return self._forces_of_pressures(terms, multipliers, laws)
+    def forces(
+        self, terms: list[Terms], multipliers: Floats, shears: bool = True, laws: bool = False
+    ) -> tuple[Floats, Floats]:
+        """Forces of the tractions on the nodes, and the sizes of their parts, shape (n_dofs,).
+
+        Without `shears` those of pressures between surfaces that may open alone; with `laws` those
+        of pressure laws alone.
+        """
+        force, size = np.zeros(self.system.n_dofs), np.zeros(self.system.n_dofs)
+        for pair, own, (p, q) in self.each(terms, multipliers):
+            if shears or not (pair.tied or (laws and pair.law is None)):
+                q = q if shears else np.zeros(pair.n)
+                pair.add_forces(own, self.dofs(own.variables), p, q, force, size)
+        return self.system.at_nodes(force), size
 
     def _pressures(self) -> Floats:
         """Pressures of all pairs on the nodes in the committed state, shape (n_dofs,)."""
         if self.at is None:
             return np.zeros(self.system.n_dofs)
-        contact = [not pair.tied for pair in self.pairs]
-        return self._forces_of_pressures(self.at.acting, self.committed, contact)
-
-    def _forces_of_pressures(
-        self, terms: list[Terms], multipliers: Floats, chosen: list[bool]
-    ) -> Floats:
-        """Pressures of chosen pairs on the nodes, shape (n_dofs,)."""
-        force = np.zeros(self.system.n_dofs)
-        each = zip(self.each(terms, multipliers), chosen, strict=True)
-        for (pair, own, (p, _)), mine in each:
-            if mine:
-                none = np.zeros(pair.n)
-                pair.add_forces(own, self.dofs(own.variables), p, none, force, None)
-        return self.system.at_nodes(force)
+        return self.forces(self.at.acting, self.committed, shears=False)[0]
 
     def _keep_law_force(self) -> None:
         """Keep the forces of pressure laws that the next increment begins with."""
@@ -547,7 +544,7 @@ class ContactTerm(Term):
         if self.law_share != 1.0 and any(pair.law is not None for pair in self.pairs):
             self.law_force = np.zeros(self.system.n_dofs)
             if self.at is not None:
-                self.law_force = self._forces_of_laws(self.at.terms, self.committed)
+                self.law_force = self.forces(self.at.terms, self.committed, False, laws=True)[0]
 
     def _changed(self, pair: Pair, step_time: float) -> float:
         """Share of the change of friction that a step has made at a time of it."""
@@ -581,19 +578,14 @@ class ContactTerm(Term):
 
     def _damp(self) -> None:
         """Damp the surfaces that this step stabilizes."""
-        system, diagonal = self.system, self.nodal
-        self.damped = np.zeros(system.n_dofs)
+        self.damped = np.zeros(self.system.n_dofs)
         for pair in self.pairs:
             item = pair.item
-            if not isinstance(item, ContactPair) or not item.stabilize:
-                continue
-            if self.number >= item.stabilize_from:
-                nodes = pair.slave.node_list
-                if pair.master is not None:
-                    nodes = np.union1d(nodes, pair.master.node_list)
-                for component in (0, 1):
-                    dofs = system.dofs(nodes, component)
-                    self.damped[dofs] = STABILIZE * diagonal[dofs]
+            if isinstance(item, ContactPair) and item.stabilize:
+                sides = (pair.slave, pair.master) if self.number >= item.stabilize_from else ()
+                for side in filter(None, sides):
+                    dofs = np.ravel([self.system.dofs(side.node_list, i) for i in (0, 1)])
+                    self.damped[dofs] = STABILIZE * self.nodal[dofs]
 
     def _damping(self, step_time: float) -> Floats | None:
         if not self.damps or not self.damped.any():

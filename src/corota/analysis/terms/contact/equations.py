@@ -4,6 +4,9 @@ The choice of the active set and Newton's method are one loop: every correction 
 current states of gaps, slips and tractions (a semismooth Newton method). The
 increment is converged when forces balance and gaps, slips and tractions satisfy the conditions
 of contact; the set is then constant.
+
+States of a correction are chosen one by one until they cycle, and such that bodies hold. Contact
+linearized about a state: what is closed stays closed and sticks.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -15,23 +18,52 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.failure import GiveUp
+from corota.analysis.linear.coupling import Coupling
+from corota.analysis.linear.saddle_point import SaddlePointSystem
+from corota.analysis.linear.triplets import Triplets
 from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms
-from corota.analysis.terms.contact.contact import few
-from corota.analysis.terms.contact.gaps import WAITED
-from corota.analysis.terms.contact.impact import impact_error
-from corota.analysis.terms.contact.kinks import along_kink, both_sides, keeps_kink
-from corota.analysis.terms.contact.messages import explanation
-from corota.analysis.terms.contact.pivoting import pivoted
-from corota.analysis.terms.contact.problem import ContactProblem, RightHandSides
+from corota.analysis.rule import REST, Rule
+from corota.analysis.terms.contact.contact import ContactTerm, few
+from corota.analysis.terms.contact.gaps import (
+    CLOSED,
+    COMPLIANCE,
+    OPEN,
+    PATIENCE,
+    SAME,
+    SLIPPING,
+    WAITED,
+    RightHandSides,
+    sticking,
+)
 from corota.analysis.terms.contact.tunneling import outside, passed
+from corota.errors import SingularError
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
+    from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.arrays import Floats
+    from corota.analysis.terms.contact.contact import Each
+    from corota.analysis.terms.contact.gaps import ContactState, Kink, Terms
+    from corota.analysis.terms.contact.pair import Pair
+    from corota.arrays import Floats, Ints
 
     States = list[NDArray[np.int8]]
+    #: Corrections of dofs and multipliers, and negative pivots; -1 if not symmetric.
+    Solution = tuple[Floats, Floats, int]
+    Linearized = tuple[Coupling, Floats, int, list[tuple[Floats, Floats]]]
+
+# What most increments do not need.
+keeps_kink = lazy("corota.analysis.terms.contact.kinks:keeps_kink")
+along_kink = lazy("corota.analysis.terms.contact.kinks:along_kink")
+both_sides = lazy("corota.analysis.terms.contact.kinks:both_sides")
+impact_error = lazy("corota.analysis.terms.contact.newton:impact_error")
+pivoted = lazy("corota.analysis.terms.contact.pivoting:pivoted")
+explanation = lazy("corota.analysis.terms.contact.output:explanation")
 
 #: Complementarity tolerance from which only digits are missing: states that do not change any more
 #: are those of the end, and a position on the way is reached.
@@ -40,10 +72,88 @@ SETTLED = 1e-6
 #: beyond which it counts as a jump to another equilibrium; driven by supports, and by forces, under
 #: which it would pass a limit point unseen.
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
+#: Merit of a correction: fraction of the friction bound from which it is repeated with slip.
+FRICTION_EXCESS = 2.0
+#: Merit of a correction: slip over the length of an edge against which friction acts, whatever held
+#: before.
+FAR_SLIP = 0.01
 
 
-class ContactEquations(ContactProblem):
-    """A system with contact, for one increment: see :class:`ContactProblem`."""
+class ContactEquations:
+    """One attempt at an increment with contact: its data, and its linearized equations.
+
+    Parameters
+    ----------
+    system : System
+    rule : Rule
+        What the increment makes of its unknowns.
+    """
+
+    #: Whether corrections are bounded by something else: none is too long, or slips at once.
+    bounded = False
+    #: Whether bodies that are not constrained are brought to a hold.
+    holds = True
+
+    def __init__(self, system: System, rule: Rule = REST) -> None:
+        self.system, self.rule = system, rule
+        self.evaluate = system.evaluate
+        self.term = system.term(ContactTerm)
+        self.n = system.n_dofs
+        self.origin: Floats = self.term.u
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin an attempt at the increment."""
+        #: States of the last correction. Closed constraints stay closed while their pressure does.
+        self.last: States | None = None
+        if self.term.at is not None and self.term.at.states:
+            self.last = [s.copy() for s in self.term.at.states]
+        #: How often a set of states came back, and how often that of each constraint changed.
+        self.seen: dict[bytes, int] = {}
+        self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.term.pairs]
+        #: Times that bodies slid, all corrections, and those by pivoting.
+        self.sliding = self.corrections = self.pivoted = 0
+        #: Whether states come from the whole linearized problem.
+        self.pivoting = False
+        #: Whether constraints were released one after the other without an end.
+        self.slides = False
+        #: Residual of the last iterate, the least one, and iterations without progress.
+        self.size, self.least, self.waited = np.inf, np.inf, 0
+        #: How the last correction was found.
+        self.stage = ""
+        #: Whether the bodies may move to another equilibrium, and from where they do.
+        self.relaxing = False
+        self.since: Floats | None = None
+        self.term.springs = None
+        #: Kink of the contact surfaces at which the bodies may rest; how many were tried, and
+        #: corrections in which one carried more than its jump.
+        self.kink: Kink | None = None
+        self.kinks = self.beyond = 0
+        #: Whether the kink is that of the committed state, which may lie behind by now.
+        self.inherits = False
+        #: Displacements of the last three evaluations.
+        self.places: list[Floats] = []
+        #: Length of the first correction.
+        self.first_move = 0.0
+        #: Bodies that were unconstrained until contact was closed.
+        self.loose = ""
+        #: Signs of slipping tractions of each pair.
+        self.slip_directions: list[Floats] = []
+
+    def go_on(self) -> None:
+        """Begin again at the equilibrium that was found, with its states."""
+        last, kink, first = self.last, self.kink, self.first_move
+        self.forget()
+        self.last, self.kink, self.first_move = last, kink, first
+
+    @property
+    def kink(self) -> Kink | None:
+        """Kink of the contact surfaces at which the bodies may rest."""
+        return self.term.trial_kink
+
+    @kink.setter
+    def kink(self, kink: Kink | None) -> None:
+        self.term.trial_kink = kink
 
     # -- the protocol of Newton's method -----------------------------------------------
 
@@ -85,7 +195,7 @@ class ContactEquations(ContactProblem):
         """Correction for a right-hand side of equilibrium; that of contact is added."""
         right_sides = RightHandSides(rhs[: self.n, None], du_prescribed[: self.n, None], np.ones(1))
         if keeps_kink(self, at):
-            corrected = along_kink(self, at, right_sides)
+            corrected: tuple[Floats, int] | None = along_kink(self, at, right_sides)
             if corrected is not None:
                 return corrected
         before = self.pivoting = self.pivoting or self.waited >= WAITED
@@ -104,7 +214,7 @@ class ContactEquations(ContactProblem):
 
     def _by_pivoting(self, at: Evaluation, right_sides: RightHandSides) -> Floats | None:
         """A correction with states from the whole linearized problem; None if there is none."""
-        found = pivoted(self, at, right_sides)
+        found: tuple[Floats, States, list[Floats]] | None = pivoted(self, at, right_sides)
         if found is None:
             return None
         z, self.last, self.slip_directions = found
@@ -131,6 +241,271 @@ class ContactEquations(ContactProblem):
         kink = self.term.kink
         if kink is not None and self.system.nlgeom and not self.term.persistent:
             self.kink, self.inherits = replace(kink, base=None), True
+
+    def complementarity(self, at: Evaluation) -> tuple[float, int, int]:
+        """Largest contact residual as a force; its pair and constraint."""
+        worst = (0.0, 0, 0)
+        for k, (pair, terms, (p, q)) in enumerate(self.pairs(at.contact_state)):
+            if pair.n:
+                complementarity = pair.violation(terms, p, q)
+                i = int(np.argmax(complementarity))
+                if complementarity[i] > worst[0]:
+                    worst = (float(complementarity[i]), k, i)
+        return worst
+
+    # -- one linearization ---------------------------------------------------------------
+
+    def moved(self, z: Floats) -> Floats:
+        """A correction, whose first size is kept."""
+        if not self.first_move:
+            self.first_move = float(np.abs(z[: self.n][~self.system.is_rotation]).max())
+        return z
+
+    def freeze(self) -> None:
+        self.corrections += 1
+        for pair in self.term.pairs:
+            pair.freeze(self.corrections)
+
+    def solve(self, at: Evaluation, states: States, right_sides: RightHandSides) -> Solution:
+        """Corrections of dofs and multipliers for states, and negative pivots of the bodies."""
+        coupling, own, expected, slopes = linearized(
+            self.term, at.contact_state, states, self.slip_directions
+        )
+        force = right_sides.force + self.system.at_nodes(coupling.force)[:, None] * right_sides.own
+        rows = own[:, None] * right_sides.own
+        if right_sides.rows is not None:
+            rows = rows + right_sides.rows
+        release = -at.contact_state.multipliers[:, None] * right_sides.own
+        du, dp, negative = self.border.solve(
+            at, coupling, force, rows, release, right_sides.constrained
+        )
+        each = zip(self.pairs(at.contact_state), states, slopes, strict=True)
+        for (pair, _, (p, q)), state, (ratio, level) in each:
+            if pair.two:
+                # Slipping tractions follow the pressure; they are no unknowns of the solution.
+                slips = np.flatnonzero(state != CLOSED)
+                now = np.outer(p[slips], right_sides.own) + dp[pair.first + slips]
+                new = ratio[slips, None] * now - np.outer((q - level)[slips], right_sides.own)
+                dp[pair.first + pair.n + slips] = new
+        return du, dp, negative - expected if negative >= 0 else -1
+
+    @property
+    def border(self) -> SaddlePointSystem:
+        """Linear algebra, kept with the system."""
+        border = self.term.border
+        if border is None:
+            ties = sum(pair.width for pair in self.term.pairs if pair.tied)
+            border = SaddlePointSystem(self.system, self.term.n, ties)
+            self.term.border = border
+        return border
+
+    def pairs(self, contact_state: ContactState) -> Iterator[Each]:
+        return self.term.each(contact_state.terms, contact_state.multipliers)
+
+    def gap_rates(
+        self, at: Evaluation, du: Floats, only: int | None = None
+    ) -> list[tuple[Floats, Floats]]:
+        """Changes of weighted gaps and slips of each pair, or one, by columns of displacements."""
+        moved = np.stack([self.system.in_space(u) for u in du.reshape(self.n, -1).T], axis=1)
+        moved = np.concatenate([moved, np.zeros((1, moved.shape[1]))])
+        out = []
+        for k, (pair, terms, _) in enumerate(self.pairs(at.contact_state)):
+            if only is not None and k != only:
+                continue
+            where, parts = self.term.dofs(terms.variables), []
+            for gradient in (terms.gap_gradient, terms.slip_gradient):
+                change = np.zeros((pair.n, moved.shape[1]))
+                np.add.at(change, terms.constraint, np.einsum("tv,tvc->tc", gradient, moved[where]))
+                parts.append(change if du.ndim > 1 else change[:, 0])
+            out.append((parts[0], parts[1]))
+        return out
+
+    # -- states --------------------------------------------------------------------------
+
+    def chosen(self, contact_state: ContactState) -> States:
+        """States for the next correction; the whole linearized problem once a set comes back."""
+        wanted = self.term.states(contact_state.terms, contact_state.multipliers, self.last)
+        if self.last is not None:
+            changed = [a != b for a, b in zip(wanted, self.last, strict=True)]
+            for flips, new in zip(self.flips, changed, strict=True):
+                flips += new
+            if any(c.any() for c in changed):
+                key = b"".join(s.tobytes() for s in wanted)
+                self.seen[key] = self.seen.get(key, 0) + 1
+                if self.seen[key] >= PATIENCE:
+                    raise GiveUp(
+                        "the contact states cycle: the same nodes open, stick and slip as in "
+                        f"{self.seen[key] - 1} earlier iterations"
+                    )
+                self.pivoting = self.pivoting or self.seen[key] >= WAITED
+        self.last = wanted
+        return wanted
+
+    def columns(
+        self,
+        at: Evaluation,
+        right_sides: RightHandSides,
+        states: States,
+        slip_directions: dict[tuple[int, int], float] | None = None,
+    ) -> tuple[Floats, int]:
+        """Solutions of one linearization, shape (n_dofs + n_multipliers, k)."""
+        self.freeze()
+        self.slip_directions = [
+            pair.slip_direction(terms, q) for pair, terms, (_, q) in self.pairs(at.contact_state)
+        ]
+        for (k, i), slip_direction in (slip_directions or {}).items():
+            self.slip_directions[k][i] = slip_direction
+        du, dp, negative = self._held(at, states, right_sides)
+        return np.concatenate([du, dp]), negative
+
+    def _held(self, at: Evaluation, states: States, right_sides: RightHandSides) -> Solution:
+        """Correction for states that constrain the bodies.
+
+        Where all nodes in contact with a body slip at once, it is unconstrained: they must stick.
+        """
+        if not self.holds:
+            return self.solve(at, states, right_sides)
+        slipping = any((s == SLIPPING).any() for s in states)
+        stuck = sticking(states) if slipping else states
+        reason: SingularError | None = None
+        for tried in [states, stuck] if slipping else [states]:
+            try:
+                found = self.solve(at, tried, right_sides)
+            except SingularError as error:
+                reason = error
+                self.sliding += slipping
+                continue
+            if tried is not stuck and slipping and self._far(found[0], right_sides):
+                self.sliding += 1
+                continue
+            found, self.last = self._let_slip(at, tried, right_sides, found)
+            return found
+        assert reason is not None
+        return self._close_some(at, stuck, right_sides, reason)
+
+    def _let_slip(
+        self,
+        at: Evaluation,
+        states: States,
+        right_sides: RightHandSides,
+        found: Solution,
+    ) -> tuple[Solution, States]:
+        """Let constraints slip at once that a correction would load far beyond friction.
+
+        Otherwise a large displacement of supports distorts the mesh before anything slips. What
+        supports move over the surface slips in any case: no traction can hold it.
+        """
+        early, border = self.corrections <= 2 and not self.bounded, self.border
+        if not (early or border.left.any() or border.left_by_others.any()):
+            return found, states
+        released = [np.zeros(p.n, bool) for p in self.term.pairs]
+        for _ in range(WAITED):
+            new = [s.copy() for s in states]
+            slip_directions = list(self.slip_directions)
+            rates = self.gap_rates(at, found[0][:, 0]) if any(r.any() for r in released) else None
+            turned = False
+            for k, (s, (pair, terms, (p, q))) in enumerate(
+                zip(new, self.pairs(at.contact_state), strict=True)
+            ):
+                if not pair.rubs:
+                    continue
+                p1 = p + found[1][pair.first : pair.first + pair.n, 0]
+                q1 = q + found[1][pair.first + pair.n : pair.first + pair.width, 0]
+                own = slice(pair.first + pair.n, pair.first + pair.width)
+                left = self.border.left[own] + self.border.left_by_others[own]
+                bound = pair.bound(np.maximum(p1, p))
+                moved = (s == CLOSED) & (np.abs(left) > pair.noise) & np.isfinite(bound)
+                q1[moved] = -left[moved]
+                slips = pair.first + pair.n + np.flatnonzero(moved)
+                self.border.dropped.difference_update(slips.tolist())
+                over = moved
+                if early:
+                    over = over | (s == CLOSED) & (np.abs(q1) > FRICTION_EXCESS * bound)
+                s[over] = SLIPPING
+                slip_direction = self.slip_directions[k]
+                slip_direction = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction)
+                if rates is not None:
+                    # What stuck without traction, or goes far, takes the direction of its slip.
+                    slip = (terms.slip + rates[k][1]) * slip_direction
+                    wrong = released[k] & (slip > FAR_SLIP * pair.edge * pair.full)
+                    slip_direction = np.where(wrong, -slip_direction, slip_direction)
+                    turned = turned or bool(wrong.any())
+                released[k] |= over
+                slip_directions[k] = slip_direction
+            same = all(np.array_equal(a, b) for a, b in zip(new, states, strict=True))
+            if same and not turned:
+                break
+            before, self.slip_directions = self.slip_directions, slip_directions
+            try:
+                other = self.solve(at, new, right_sides)
+            except SingularError:
+                self.slip_directions = before
+                break
+            if self._far(other[0], right_sides):
+                self.slip_directions = before
+                break
+            found, states = other, new
+        else:
+            # One release overloads the next constraint, as along a rope.
+            self.pivoting = self.slides = True
+        return found, states
+
+    def _far(self, du: Floats, right_sides: RightHandSides) -> bool:
+        """Whether a correction moves the surfaces beyond the contact search distance."""
+        if self.bounded:
+            return False
+        moved, moves = (
+            np.abs(self.system.by_node(x[:, 0])[:, :2]) for x in (du, right_sides.constrained)
+        )
+        return any(
+            pair.rubs and float(moved[pair.on_slave].max()) > pair.reach + 2.0 * float(moves.max())
+            for pair in self.term.pairs
+        )
+
+    def _close_some(
+        self,
+        at: Evaluation,
+        states: States,
+        right_sides: RightHandSides,
+        error: SingularError,
+    ) -> Solution:
+        """Bring unconstrained bodies into contact: close the nearest nodes, increasingly many."""
+        gaps = [
+            np.where((s == OPEN) & (not pair.tied), pair.trial(terms, p)[0], np.inf)
+            for s, (pair, terms, (p, _)) in zip(states, self.pairs(at.contact_state), strict=True)
+        ]
+        nearest = min(float(gap.min(initial=np.inf)) for gap in gaps)
+        for count in (0, 1, 2, None):
+            tried = [s.copy() for s in states]
+            for s, gap in zip(tried, gaps, strict=True):
+                if count == 0:
+                    # A flat side comes to rest on all of its nodes.
+                    s[gap <= nearest * (1.0 + SAME)] = CLOSED
+                    continue
+                near = np.argsort(gap, kind="stable")[:count]
+                s[near[gap[near] < np.inf]] = CLOSED
+            if all(np.array_equal(a, b) for a, b in zip(tried, states, strict=True)):
+                break
+            try:
+                found = self.solve(at, tried, right_sides)
+            except SingularError:
+                continue
+            self.last, self.loose = tried, str(error)
+            return found
+        open_pairs = [
+            pair.name
+            for pair, s in zip(self.term.pairs, states, strict=True)
+            if not (s != OPEN).any()
+        ]
+        if open_pairs:
+            raise SingularError(
+                f"{error}; contact pair {open_pairs[0]!r} is open: support the body until it is "
+                "in contact, start in contact (start='adjust'), or damp it (stabilize=True, "
+                "*CONTACT CONTROLS, STABILIZE)",
+                error.equation,
+                error.mode,
+            ) from None
+        raise error
 
     # -- the end of an increment -------------------------------------------------------
 
@@ -211,9 +586,10 @@ class ContactEquations(ContactProblem):
         return self.contact_state.force_at_end
 
     def impact_error(self, moved: Floats, energy: float, tolerance: float, meets: bool) -> float:
-        """See :func:`corota.analysis.terms.contact.impact.impact_error`."""
-        assert self.contact_state is not None
-        return impact_error(self.term, self.contact_state, moved, energy, tolerance, meets)
+        """See :func:`corota.analysis.terms.contact.newton.impact_error`."""
+        state = self.contact_state
+        error: float = impact_error(self.term, state, moved, energy, tolerance, meets)
+        return error
 
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""
@@ -244,4 +620,207 @@ class ContactEquations(ContactProblem):
 
     def explain(self, at: Evaluation | None) -> str:
         """Pair and nodes that caused a failed increment, and what was tried."""
-        return explanation(self, at)
+        said: str = explanation(self, at)
+        return said
+
+
+def linearized(
+    term: ContactTerm, at: ContactState, states: States, slip_directions: list[Floats]
+) -> Linearized:
+    """The border for states, its right-hand side, and its negative pivots.
+
+    Behind these, of each pair: the slopes of slipping tractions over the pressure and their
+    tractions at no pressure, shapes (n,).
+
+    Parameters
+    ----------
+    slip_directions : list of ndarray
+        Signs of slipping tractions of each pair.
+    """
+    geometric_stiffness, skew, rows, follow, slopes = [], [], [], [], []
+    diagonal, rhs = np.ones(term.n), np.zeros(term.n)
+    force = np.zeros(term.system.n_dofs)
+    expected = 0
+    each = zip(term.each(at.terms, at.multipliers), states, slip_directions, strict=True)
+    for (pair, terms, (p, q)), state, slip_direction in each:
+        first, second, end = pair.first, pair.first + pair.n, pair.first + pair.width
+        dp, rp, dq, rq, ratio, level = pair.rows(terms, state, p, q, slip_direction)
+        slopes.append((ratio, level))
+        closed, sticks, share = state != OPEN, state == CLOSED, term.share(pair)
+        diagonal[first:second], rhs[first:second] = share * dp, share * rp
+        expected += int(closed.sum())
+        acting = terms.acting
+        to_rows = term.dofs(terms.variables)
+        to_acting = to_rows if acting is terms else term.dofs(acting.variables)
+
+        def columns(
+            name: str,
+            start: int,
+            chosen: NDArray[np.bool_],
+            share: float = 1.0,
+            both: tuple[Terms, Terms] = (terms, acting),
+            dofs: tuple[Ints, Ints] = (to_rows, to_acting),
+        ) -> None:
+            """A gradient at the end in rows and columns; forces may act along another."""
+            k, own = both[0].constraint, share * getattr(both[0], name)
+            rows.append(border(dofs[0], start + k, -own, chosen[k]))
+            if both[1] is not both[0]:
+                follow.append(border(dofs[0], start + k, own, chosen[k]))
+                k, own = both[1].constraint, share * getattr(both[1], name)
+                follow.append(border(dofs[1], start + k, -own, chosen[k]))
+
+        columns("gap_gradient", first, closed, share)
+        # Tractions that are known after the correction go to the right-hand side.
+        known, shear = np.where(closed, 0.0, -share * p), np.zeros(pair.n)
+        if pair.two:
+            diagonal[second:end], rhs[second:end] = dq, rq
+            expected += int(sticks.sum())
+            columns("slip_gradient", second, sticks)
+            shear = np.where(sticks, 0.0, ratio * p + level - q)
+            k = acting.constraint
+            slope = -ratio[k, None] * acting.slip_gradient
+            follow.append(border(to_acting, first + k, slope, state[k] == SLIPPING))
+        pair.add_forces(acting, to_acting, known, shear, force, None)
+        if pair.active and term.system.nlgeom and (p.any() or q.any()):
+            # Half way an end moves by half.
+            half = 1.0 if acting is terms else 0.5
+            even, odd = second_derivatives(term, pair, half * share * p, half * q)
+            geometric_stiffness.append(even)
+            skew.append(odd)
+
+    # Where all stick, nothing moves along the tractions, which take the skew part up: without it
+    # the matrix is symmetric, and its inertia known.
+    slips = any(bool((state == SLIPPING).any()) for state in states)
+
+    def near() -> tuple[Ints, Ints]:
+        each = zip(term.pairs, at.terms, strict=True)
+        return stacked([_near(term, pair, terms) for pair, terms in each])
+
+    coupling = Coupling(
+        Triplets.join(geometric_stiffness),
+        Triplets.join(skew if slips else []),
+        Triplets.join(rows),
+        Triplets.join(follow),
+        diagonal,
+        force,
+        near,
+    )
+    return coupling, rhs, expected, slopes
+
+
+def second_derivatives(
+    term: ContactTerm, pair: Pair, p: Floats, q: Floats
+) -> tuple[Triplets, Triplets]:
+    """Geometric stiffness: derivatives of the directions of the tractions.
+
+    Returns
+    -------
+    even, odd : Triplets
+        Symmetric part, and the skew part that friction has.
+    """
+    with term.system.timed("contact"):
+        _, variables, values = pair.core.hessian(p[pair.owner], q[pair.owner])
+    where = term.dofs(variables)
+    v = where.shape[1]
+    a, b = np.repeat(where, v, axis=1).ravel(), np.repeat(where, v, axis=0).ravel()
+    inside = (a >= 0) & (b >= 0)
+
+    def entries(part: Floats) -> Triplets:
+        flat = -part.reshape(-1)
+        return Triplets(a, b, flat).keep(inside & (flat != 0.0))
+
+    if not pair.rubs or not q.any():
+        return entries(values), Triplets.join([])
+    turned = values.transpose(0, 2, 1)
+    return entries(0.5 * (values + turned)), entries(0.5 * (values - turned))
+
+
+def _near(term: ContactTerm, pair: Pair, terms: Terms) -> tuple[Ints, Ints]:
+    """Dofs and multipliers of candidate pairs next to closed ones."""
+    none = np.zeros((0, 0), np.int64)
+    if not term.system.nlgeom:
+        return none, none
+    variables, constraints = pair.core.pattern()
+    found = pair.core.candidates()
+    used = np.zeros(len(found), bool)
+    used[terms.pair] = True
+    if not used.any():
+        return none, none
+    width = int(found[:, 1].max()) + 8
+    key = found[:, 0] * width + found[:, 1] + 3
+    keys = np.sort(key[used])
+    next_up = np.minimum(np.searchsorted(keys, key - 2), len(keys) - 1)
+    close = np.abs(keys[next_up] - key) <= 2
+    variables, constraints = variables[close], constraints[close]
+    own = np.where(constraints >= 0, pair.first + pair.owner[constraints], -1)
+    if pair.two:
+        own = np.concatenate([own, np.where(own >= 0, own + pair.n, -1)], axis=1)
+    return term.dofs(variables), own
+
+
+def border(where: Ints, column: Ints, gradient: Floats, rows: NDArray[np.bool_]) -> Triplets:
+    """Gradients of some terms as columns."""
+    where, gradient = where[rows], gradient[rows]
+    columns = np.repeat(column[rows], where.shape[1])
+    flat, values = where.ravel(), gradient.ravel()
+    keep = (flat >= 0) & (values != 0.0)
+    return Triplets(flat[keep], columns[keep], values[keep])
+
+
+def stacked(parts: list[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
+    """Rows of several pairs below each other, filled with -1."""
+    out = []
+    for which in (0, 1):
+        tables = [p[which] for p in parts if len(p[which])]
+        width = max((t.shape[1] for t in tables), default=0)
+        full = np.full((sum(len(t) for t in tables), width), -1, np.int64)
+        first = 0
+        for table in tables:
+            full[first : first + len(table), : table.shape[1]] = table
+            first += len(table)
+        out.append(full)
+    return out[0], out[1]
+
+
+def linearized_contact(
+    system: System, u: Floats, multipliers: Floats | None, states: States | None, time: float
+) -> tuple[Evaluation, Coupling, Floats, States, Ints]:
+    """Evaluation with the forces of contact, its rows, residuals, states, and multipliers of laws.
+
+    Parameters
+    ----------
+    u : ndarray, shape (n_dofs,)
+    multipliers : ndarray, shape (n_multipliers,), or None
+        The committed ones by default.
+    states : list of ndarray or None
+        Of the constraints; the committed ones by default, with what slips stuck.
+    time : float
+        Step time.
+    """
+    term = system.term(ContactTerm)
+    if not term.pairs:
+        none, entries = np.zeros(0), Triplets.join([])
+        coupling = Coupling(entries, entries, entries, entries, none, none, lambda: stacked([]))
+        return system.evaluate(u.copy(), time), coupling, none, [], term.law_multipliers()
+    if multipliers is None:
+        multipliers = term.committed
+    term.springs = term.trial_kink = None
+    at = system.evaluate(np.concatenate([u, multipliers]), time)
+    if states is None and term.at is not None and term.at.states:
+        states = term.at.states
+    elif states is None:
+        states = term.states(at.contact_state.terms, multipliers)
+    states = sticking(states)
+    ones = [np.ones(pair.n) for pair in term.pairs]
+    coupling, residuals, _, _ = linearized(term, at.contact_state, states, ones)
+    own, hard = np.zeros(term.n), np.zeros(term.n, bool)
+    for pair in term.pairs:
+        part = pair.full / pair.stiffness
+        own[pair.first : pair.first + pair.width] = np.tile(part, pair.width // pair.n)
+        hard[pair.first : pair.first + pair.width] = pair.law is None
+        # Slips of a pair with a pressure law have no compliance either.
+        hard[pair.first + pair.n : pair.first + pair.width] = True
+    bare = hard & (coupling.diagonal <= 0.0)
+    coupling.diagonal[bare] = -COMPLIANCE * own[bare]
+    term.revert()
+    return at, coupling, residuals, states, term.law_multipliers()

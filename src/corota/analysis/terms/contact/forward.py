@@ -14,67 +14,51 @@ is too stiff for the increment, the gap at its end, as if there were none. Both 
 
 The forces ``z = (p, q)`` of some constraints change their gaps and slips by ``A z``, where
 ``A = dt^2 G M^-1 G^T`` is symmetric and at least semidefinite. The set of closed and slipping
-constraints is found by Newton's method; where that cycles, by sweeps of Gauss and Seidel.
+constraints is found by Newton's method; where that cycles, by Lemke's method for the whole
+complementarity problem.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.gaps import (
+    AT_ONCE,
     CHANGES,
     CLOSED,
     COMPLIANCE,
-    HALVINGS,
     OPEN,
+    SAME,
     SLIPPING,
     SMALL,
     ContactState,
     covered,
 )
 from corota.errors import ConvergenceError
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
     from corota.analysis.energies import Energies
     from corota.analysis.equations import System
+    from corota.analysis.linear.types import Kind
     from corota.analysis.terms.contact.pair import Pair, Terms
     from corota.arrays import Bools, Floats, Ints
 
     States = NDArray[np.int8]
-    #: Pressures and their derivatives of some constraints at some gaps.
-    Law = Callable[[Ints, Floats], tuple[Floats, Floats]]
+    #: Pressures of constraints at their gaps, and their derivatives.
+    Law = Callable[[Floats], tuple[Floats, Floats]]
 
-#: Entries of a matrix from which it is treated as sparse (cost alone).
-DENSE = 100_000
-
-
-class NoForwardContact:
-    """A model without pairs and ties.
-
-    Parameters
-    ----------
-    n_dofs : int
-    """
-
-    def __init__(self, n_dofs: int) -> None:
-        self.n_dofs = n_dofs
-
-    def act(self, *_: object) -> Floats:
-        """No force."""
-        return np.zeros(self.n_dofs)
-
-    def sums(self) -> dict[str, float]:
-        """No output."""
-        return {}
+lemke = lazy("corota.analysis.terms.contact.pivoting:lemke")
 
 
 class ForwardContact:
@@ -82,7 +66,7 @@ class ForwardContact:
 
     Parameters
     ----------
-    contact : ContactTerm
+    system : System
     account : Energies
     dt : float
         Increment [time].
@@ -94,15 +78,16 @@ class ForwardContact:
         at the beginning of contact. It remains until the gap opens.
     """
 
-    def __init__(self, contact: ContactTerm, account: Energies, dt: float) -> None:
-        self.contact, self.account, self.dt = contact, account, dt
+    def __init__(self, system: System, account: Energies, dt: float) -> None:
+        self.account, self.dt = account, dt
+        contact = self.contact = system.term(ContactTerm)
         self.depth = [np.zeros(pair.n) for pair in contact.pairs]
         self.state = [np.full(pair.n, OPEN, np.int8) for pair in contact.pairs]
         self.sense = [np.ones(pair.n if pair.two else 0) for pair in contact.pairs]
         # Work of the forces of the last state in the first half of what follows.
         self.pending = 0.0
         self.rubbed = [0.0] * len(contact.pairs)
-        if account.impact is None:
+        if contact.pairs and account.impact is None:
             account.impact = 0.0
 
     def act(
@@ -143,40 +128,29 @@ class ForwardContact:
             If two fixed surfaces are pressed into each other, or no forces are found.
         """
         contact, system = self.contact, self.contact.system
+        if not contact.pairs:
+            return np.zeros(system.n_dofs)
         with system.timed("contact"):
-            x = contact.positions(u)
-            # Coefficients of friction are those at the slip rates of the increment before.
+            x, found = contact.positions(u), []
             for pair, (p, _) in zip(contact.pairs, contact.parts(contact.committed), strict=True):
+                # Coefficients of friction are those at the slip rates of the increment before.
                 pair.rub(contact.number, 1.0, p)
-            found = [self._look(pair, x, time) for pair in contact.pairs]
+                pair.core.offset = contact.offset_at(pair, time)
+                found.append(pair.evaluate(x, x, system.nlgeom))
             problem = _Increment(self, found, ahead, before, share, inverse, time)
             multipliers = problem.solve()
-            force, size = self._forces(found, multipliers)
-            along = system.at_nodes(force)
-            self._count(found, multipliers, along, moved, ahead + problem.pushed)
+            force, size = contact.forces(found, multipliers)
+            self._count(problem, multipliers, force, moved, ahead + problem.pushed)
             self._commit(u, found, multipliers, force, size, time)
-        return along
+        return force
 
     def sums(self) -> dict[str, float]:
         """Contact output of a frame."""
-        return {"contact work": self.account.contact}
-
-    def _look(self, pair: Pair, x: Floats, time: float) -> Terms:
-        """Gaps at a state."""
-        pair.core.offset = self.contact.offset_at(pair, time)
-        return pair.evaluate(x, x, self.contact.system.nlgeom)
-
-    def _forces(self, found: list[Terms], multipliers: Floats) -> tuple[Floats, Floats]:
-        """Forces in global axes, and their sizes, shape (n_dofs,)."""
-        contact, n = self.contact, self.contact.system.n_dofs
-        force, size = np.zeros(n), np.zeros(n)
-        for pair, terms, (p, q) in contact.each(found, multipliers):
-            pair.add_forces(terms, contact.dofs(terms.variables), p, q, force, size)
-        return force, size
+        return {"contact work": self.account.contact} if self.contact.pairs else {}
 
     def _count(
         self,
-        found: list[Terms],
+        problem: _Increment,
         multipliers: Floats,
         force: Floats,
         moved: Floats,
@@ -189,21 +163,20 @@ class ForwardContact:
         self.pending = 0.5 * float(force @ ahead)
         account.contact += done
         account.impact += done
-        for i, (pair, terms, (_, q)) in enumerate(contact.each(found, multipliers)):
+        slips, follow = (problem.split(problem.travel(by)[1]) for by in (moved, ahead))
+        for i, (pair, terms, (_, q)) in enumerate(contact.each(problem.found, multipliers)):
             stored = pair.law_energy(contact.at.terms[i]) if contact.at is not None else 0.0
             seen = covered(terms.area, pair.full)
             pair.area = np.where(seen, terms.area, pair.full)
             account.impact += pair.law_energy(terms) - stored
             if not pair.rubs:
                 continue
-            slip = travel(contact, terms, terms.slip_gradient, moved, pair.n)
-            more = travel(contact, terms, terms.slip_gradient, ahead, pair.n)
-            rubbed = self.rubbed[i] + 0.5 * float(np.maximum(-q * slip, 0.0).sum())
-            self.rubbed[i] = 0.5 * float(np.maximum(-q * more, 0.0).sum())
+            rubbed = self.rubbed[i] + 0.5 * float(np.maximum(-q * slips[i], 0.0).sum())
+            self.rubbed[i] = 0.5 * float(np.maximum(-q * follow[i], 0.0).sum())
             pair.friction_work += rubbed
             account.impact += rubbed
-            pair.slid += np.where(q != 0.0, slip / pair.area, 0.0)
-            pair.slide(replace(terms, slip=slip), self.dt)
+            pair.slid += np.where(q != 0.0, slips[i] / pair.area, 0.0)
+            pair.slide(replace(terms, slip=slips[i]), self.dt)
 
     def _commit(
         self,
@@ -247,50 +220,57 @@ class _Increment:
         counts = [pair.n for pair in pairs]
         self.first = np.concatenate([[0], np.cumsum(counts)])
         self.n = int(self.first[-1])
-        joined = {
-            "area": [terms.area for terms in found],
-            "full": [pair.full for pair in pairs],
-            "gap": [terms.gap for terms in found],
-            "slip": [terms.slip if pair.tied else np.zeros(pair.n) for pair, terms in self._each()],
-            "noise": [np.full(pair.n, pair.noise) for pair in pairs],
-        }
-        self.area, self.full, gap, slip, noise = (np.concatenate(v) for v in joined.values())
+
+        def joined(parts: list[Floats]) -> Floats:
+            return np.concatenate(parts)
+
+        self.area, self.full = joined([t.area for t in found]), joined([p.full for p in pairs])
         self.tied = np.repeat([pair.tied for pair in pairs], counts)
         self.ruled = np.repeat([pair.law is not None for pair in pairs], counts)
-        self.friction = np.concatenate([pair.friction for pair in pairs])
+        # Gaps below which pressure laws act, doubled for other constraints.
+        starts = [0.0 if pair.law is None else max(-pair.law.start, 0.0) for pair in pairs]
+        self.near = 2.0 * np.repeat(starts, counts)
+        self.friction = joined([pair.friction for pair in pairs])
         self.two = np.repeat([pair.two for pair in pairs], counts)
         self.seen = covered(self.area, self.full)
-        self.tolerance = noise * self.full
+        self.tolerance = np.repeat([pair.noise for pair in pairs], counts) * self.full
         self.state = np.concatenate(own.state)
         self.sense = np.ones(self.n)
-        self.sense[self.two] = np.concatenate(own.sense)
-        traveled, slid = self._travel(ahead)
-        self.travel = traveled
-        ramp = np.concatenate([self._ramp(pair, time) for pair in pairs])
+        self.sense[self.two] = joined(own.sense)
+        # Gradients of all gaps and slips, a term per row.
+        some = [k for k, terms in enumerate(found) if len(terms.constraint)] or [0]
+        self.constraint = np.concatenate([self.first[k] + found[k].constraint for k in some])
+        self.dofs = np.concatenate([self.contact.dofs(found[k].variables) for k in some])
+        slides = self.two[self.constraint, None]
+        self.gradients = (
+            joined([found[k].gap_gradient for k in some]),
+            np.where(slides, joined([found[k].slip_gradient for k in some]), 0.0),
+        )
+        gap = joined([terms.gap for terms in found])
+        self.change, slid = self.travel(ahead)
+        offset = self.contact.offset_at
+        now, later = (joined([offset(p, t) for p in pairs]) for t in (time, time + own.dt))
         depth = self._depth(gap)
-        own.depth = np.split(depth, self.first[1:-1])
-        self.gap = gap + depth * self.area + traveled + ramp * self.area
-        self.slip = slip + slid
+        own.depth = self.split(depth)
+        # Initial overlaps may be removed over the step.
+        self.gap = gap + depth * self.area + self.change + (now - later) * self.area
+        self.slip = np.where(self.tied, joined([terms.slip for terms in found]), 0.0) + slid
         # A law takes the mean of the last three gaps: a quarter of dt^2 times the acceleration.
-        rest = self._travel(before)[0]
-        self.soft = gap + 0.25 / share * (traveled - rest)
+        self.soft = gap + 0.25 / share * (self.change - self.travel(before)[0])
 
-    def _each(self) -> list[tuple[Pair, Terms]]:
-        return list(zip(self.contact.pairs, self.found, strict=True))
+    def split(self, values: NDArray[Kind]) -> list[NDArray[Kind]]:
+        """Values of all constraints by pair."""
+        return np.split(values, self.first[1:-1])
 
-    def _travel(self, moved: Floats) -> tuple[Floats, Floats]:
+    def travel(self, moved: Floats) -> tuple[Floats, Floats]:
         """Changes of all gaps and slips by a displacement, linearized."""
-        gaps, slips = [], []
-        for pair, terms in self._each():
-            gaps.append(travel(self.contact, terms, terms.gap_gradient, moved, pair.n))
-            some = travel(self.contact, terms, terms.slip_gradient, moved, pair.n)
-            slips.append(some if pair.two else np.zeros(pair.n))
-        return np.concatenate(gaps), np.concatenate(slips)
+        by_dof = np.append(self.contact.system.in_space(moved), 0.0)[self.dofs]
 
-    def _ramp(self, pair: Pair, time: float) -> Floats:
-        """Change of gaps while initial overlaps are removed over the step [length]."""
-        later = self.contact.offset_at(pair, time + self.own.dt)
-        return np.asarray(self.contact.offset_at(pair, time) - later)
+        def change(gradient: Floats) -> Floats:
+            part = (gradient * by_dof).sum(axis=1)
+            return np.asarray(np.bincount(self.constraint, part, self.n), np.float64)
+
+        return change(self.gradients[0]), change(self.gradients[1])
 
     def _depth(self, gap: Floats) -> Floats:
         """Overlap that is not removed: that at the beginning of contact, or its remainder."""
@@ -308,37 +288,29 @@ class _Increment:
         multipliers = np.zeros(own.n)
         p, q = np.zeros(self.n), np.zeros(self.n)
         chosen = self.seen & (self.tied | (self.state != OPEN) | (self.gap < -self.tolerance))
-        chosen |= self.seen & self.ruled & (self.gap < self.area * self._start_of_laws())
+        chosen |= self.seen & self.ruled & (self.gap < self.area * self.near)
         movable = np.zeros(self.n, bool)
         while chosen.any():
             movable, p, q, self.pushed = self._forces(chosen)
-            rise = self._travel(self.pushed)[0] if self.pushed.any() else 0.0
+            rise = self.travel(self.pushed)[0] if self.pushed.any() else 0.0
             more = self.seen & ~chosen & ~self.ruled & (self.gap + rise < -self.tolerance)
             if not more.any():
                 break
             chosen = chosen | more
         self._check(chosen & ~movable)
         self.state[~chosen | ~movable] = OPEN
-        self.own.state = np.split(self.state, self.first[1:-1])
-        sense = np.split(self.sense, self.first[1:-1])
-        self.own.sense = [s[: len(old)] for s, old in zip(sense, self.own.sense, strict=True)]
+        self.own.state = self.split(self.state)
+        each = zip(self.split(self.sense), self.own.sense, strict=True)
+        self.own.sense = [sense[: len(old)] for sense, old in each]
         for pair, a, b in zip(own.pairs, self.first[:-1], self.first[1:], strict=True):
             multipliers[pair.first : pair.first + pair.n] = p[a:b]
             if pair.two:
                 multipliers[pair.first + pair.n : pair.first + pair.width] = q[a:b]
         return multipliers
 
-    def _start_of_laws(self) -> Floats:
-        """Gaps below which pressure laws act, shape (n,), doubled for other constraints."""
-        starts = [
-            np.full(pair.n, 0.0 if pair.law is None else max(-pair.law.start, 0.0))
-            for pair in self.contact.pairs
-        ]
-        return 2.0 * np.concatenate(starts)
-
     def _forces(self, chosen: Bools) -> tuple[Bools, Floats, Floats, Floats]:
         """Forces of some constraints: which can act, p and q, and the resulting motion."""
-        rows, columns, values = self._gradients(chosen)
+        rows, columns, values = self._entries(chosen)
         dofs, columns = np.unique(columns, return_inverse=True)
         mass = self.share * self.inverse[dofs]
         size = np.bincount(rows, values * values * mass[columns], 2 * self.n)
@@ -351,13 +323,10 @@ class _Increment:
         matrix = _compliance(rows, columns, values, mass, len(here))
         place = np.cumsum(movable) - 1
         matrix *= self.own.dt**2
-        laws = self._laws(movable, place)
-        stiff = np.zeros(len(normal), bool)
-        deepest = np.minimum(self.gap, self.gap - self.travel)[normal]
-        for some, law in laws:
-            square = -law(some, deepest[some])[1] * np.diagonal(matrix)[some] / self.share
-            # Beyond a frequency of 1/dt the increment does not resolve the law.
-            stiff[some] = square > 1.0
+        law = partial(self._law, normal)
+        slope = law(np.minimum(self.gap, self.gap - self.change)[normal])[1]
+        # Beyond a frequency of 1/dt the increment does not resolve the law.
+        stiff = -slope * np.diagonal(matrix)[: len(normal)] / self.share > 1.0
         problem = UnilateralConstraints(
             matrix,
             self.gap[normal],
@@ -368,7 +337,8 @@ class _Increment:
             self.tolerance[normal],
             np.where(stiff, self.gap[normal], self.soft[normal]),
             np.where(stiff, 1.0, 0.25 / self.share),
-            laws,
+            self.ruled[normal],
+            law,
         )
         fresh = (self.state[normal] == OPEN) & (self.gap[normal] < -self.tolerance[normal])
         start = np.where(fresh, CLOSED, self.state[normal]).astype(np.int8)
@@ -387,54 +357,42 @@ class _Increment:
         pushed[dofs] = self.own.dt**2 * mass * moved
         return movable, p, q, pushed
 
-    def _gradients(self, chosen: Bools) -> tuple[Ints, Ints, Floats]:
+    def _each(self) -> Iterator[tuple[Pair, int]]:
+        """Each pair, and its first constraint."""
+        return zip(self.contact.pairs, self.first.tolist(), strict=False)
+
+    def _entries(self, chosen: Bools) -> tuple[Ints, Ints, Floats]:
         """Triplets of the gradients of gaps, and of slips behind them, where masses move."""
-        rows, columns, values = [], [], []
-        for (pair, terms), first in zip(self._each(), self.first, strict=False):
-            own = chosen[first : first + pair.n]
-            kept = own[terms.constraint]
-            where = self.contact.dofs(terms.variables[kept])
-            row = np.repeat(first + terms.constraint[kept], where.shape[1])
-            kinds = [(0, terms.gap_gradient)]
-            if pair.two:
-                kinds.append((self.n, terms.slip_gradient))
-            for offset, gradient in kinds:
-                flat, value = where.ravel(), gradient[kept].ravel()
-                acts = (flat >= 0) & (value != 0.0)
-                rows.append(offset + row[acts])
-                columns.append(flat[acts])
-                values.append(value[acts])
-        along, dofs, parts = self.contact.system.constraints.entries_to_axes(
-            np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
+        kept = chosen[self.constraint]
+        where = self.dofs[kept]
+        row = np.repeat(self.constraint[kept], where.shape[1])
+        columns, values = np.tile(where.ravel(), 2), np.ravel([g[kept] for g in self.gradients])
+        acts = (columns >= 0) & (values != 0.0)
+        rows, columns, values = self.contact.system.constraints.entries_to_axes(
+            np.concatenate([row, self.n + row])[acts], columns[acts], values[acts]
         )
-        acts = self.inverse[dofs] > 0.0
-        return along[acts], dofs[acts], parts[acts]
+        acts = self.inverse[columns] > 0.0
+        return rows[acts], columns[acts], values[acts]
 
-    def _laws(self, movable: Bools, place: Ints) -> list[tuple[Ints, Law]]:
-        out: list[tuple[Ints, Law]] = []
-        area = self.area[movable]
-        for (pair, _), first in zip(self._each(), self.first, strict=False):
-            if pair.law is None:
-                continue
-            mine = np.flatnonzero(movable[first : first + pair.n])
-
-            def law(rows: Ints, gap: Floats, pair: Pair = pair) -> tuple[Floats, Floats]:
-                pressure, slope, _ = pair.conditions.pressure(gap / area[rows])
-                return pressure, -slope / area[rows]
-
-            out.append((place[first + mine], law))
-        return out
+    def _law(self, normal: Ints, gap: Floats) -> tuple[Floats, Floats]:
+        """Pressures of the laws of some constraints at gaps, and derivatives; zero elsewhere."""
+        pressure, slope = np.zeros(len(normal)), np.zeros(len(normal))
+        for pair, first in self._each():
+            if pair.law is not None:
+                own = (normal >= first) & (normal < first + pair.n)
+                area = self.area[normal][own]
+                pressure[own], rise, _ = pair.conditions.pressure(gap[own] / area)
+                slope[own] = -rise / area
+        return pressure, slope
 
     def _check(self, held: Bools) -> None:
         """Refuse two fixed surfaces that are pressed into each other."""
-        for (pair, _), first in zip(self._each(), self.first, strict=False):
-            if pair.tied or pair.law is not None:
-                continue
-            k = slice(first, first + pair.n)
-            length = np.where(self.seen[k], self.gap[k] / np.maximum(self.area[k], 1e-300), 0.0)
-            wrong = held[k] & (length < -SMALL * float(pair.slave.length.mean()))
-            if wrong.any():
-                label = self.contact.label(pair, int(np.argmax(wrong)))
+        hard = self.seen & held & ~self.tied & ~self.ruled
+        edges = [float(pair.slave.length.mean()) for pair in self.contact.pairs]
+        wrong = hard & (self.gap < -SMALL * self.area * np.repeat(edges, np.diff(self.first)))
+        for (pair, _), own in zip(self._each(), self.split(wrong), strict=True):
+            if own.any():
+                label = self.contact.label(pair, int(np.argmax(own)))
                 raise ConvergenceError(
                     f"contact pair {pair.name!r}: node {label} is fixed and pressed into the other "
                     "side, which is fixed too; release one of them"
@@ -443,7 +401,7 @@ class _Increment:
 
 def _compliance(rows: Ints, columns: Ints, values: Floats, mass: Floats, n: int) -> Floats:
     """``G W G^T`` of a matrix G with n rows in triplets and diagonal weights W."""
-    if n * len(mass) <= DENSE:
+    if n * len(mass) <= AT_ONCE:
         g = np.zeros((n, len(mass)))
         np.add.at(g, (rows, columns), values)
         return np.asarray((g * mass) @ g.T)
@@ -451,19 +409,6 @@ def _compliance(rows: Ints, columns: Ints, values: Floats, mass: Floats, n: int)
 
     many: Any = sp.csr_array((values, (rows, columns)), shape=(n, len(mass)))
     return np.asarray(((many * mass) @ many.T).toarray())
-
-
-def travel(contact: ContactTerm, terms: Terms, gradient: Floats, moved: Floats, n: int) -> Floats:
-    """Change of the gaps or slips of a pair by a displacement, linearized, shape (n,)."""
-    moved = contact.system.in_space(moved)
-    by_dof = np.append(moved, 0.0)[contact.dofs(terms.variables)]
-    return np.asarray(np.bincount(terms.constraint, (gradient * by_dof).sum(axis=1), n), np.float64)
-
-
-#: Limit of the sweeps of Gauss and Seidel in an explicit step.
-SWEEPS = 5000
-#: Rounding bound of explicit steps: relative change of a force, or error of a law.
-ROUNDING = 1e-12
 
 
 @dataclass
@@ -487,8 +432,10 @@ class UnilateralConstraints:
         Gap that a law takes, without these forces.
     share : ndarray, shape (m,)
         Fraction of the change of a gap that a law sees.
-    laws : list of tuple
-        Constraints with functions for pressures and their derivatives by the gap, for some of them.
+    ruled : ndarray of bool, shape (m,)
+        Constraints with a pressure law.
+    law : callable
+        Their pressures at gaps of shape (m,), and the derivatives by the gap; zero elsewhere.
     """
 
     matrix: Floats
@@ -500,14 +447,12 @@ class UnilateralConstraints:
     tolerance: Floats
     soft: Floats
     share: Floats
-    laws: list[tuple[Ints, Law]] = field(default_factory=list)
+    ruled: Bools
+    law: Law
 
     def __post_init__(self) -> None:
         self.m, self.t = len(self.gap), len(self.slip)
         self._diagonal = np.diagonal(self.matrix)
-        self._ruled = np.zeros(self.m, bool)
-        for rows, _ in self.laws:
-            self._ruled[rows] = True
 
     def solve(self, state: States, sense: Floats) -> tuple[Floats, States, Floats] | None:
         """Forces, states and senses of slip; None where none are found.
@@ -527,28 +472,27 @@ class UnilateralConstraints:
         found = self._newton(state, sense)
         if found is not None:
             return found
-        z = self._sweep()
+        z = self._pivoted()
         if z is None:
             return None
-        state, sense = self._read(z)
-        # Sweeps stop before the exact solution of their set.
-        return self._newton(state, sense) or (z, state, sense)
+        p, q = z[: self.m], z[self.m :]
+        state = np.where((p > 0.0) | self.tied, CLOSED, OPEN).astype(np.int8)
+        bound = self.friction * p[self.of]
+        slips = (np.abs(q) >= bound * (1.0 - SAME)) & (p[self.of] > 0.0) & ~self.tied[self.of]
+        state[self.of[slips]] = SLIPPING
+        return z, state, np.where(q > 0.0, 1.0, -1.0)
 
     # -- Newton's method on the set ----------------------------------------------------
 
     def _newton(self, state: States, sense: Floats) -> tuple[Floats, States, Floats] | None:
-        pressure, slope = self._follow(self.soft)
-        state = np.where(self._ruled & (slope == 0.0), OPEN, state).astype(np.int8)
+        pressure, slope = self.law(self.soft)
+        state = np.where(self.ruled & (slope == 0.0), OPEN, state).astype(np.int8)
         soft = self.soft
         seen: set[bytes] = set()
         for _ in range(CHANGES):
             z = self._forces(state, sense, soft, pressure, slope)
             gap, slip = self._motion(z)
-            soft = self.soft + self.share * (gap - self.gap)
-            pressure, slope = self._follow(soft)
-            missed = np.abs(z[: self.m] - pressure)[self._ruled]
-            rounding = ROUNDING * pressure.max(initial=0.0) - slope * self.tolerance
-            settled = bool((missed <= rounding[self._ruled]).all())
+            soft, pressure, slope, settled = self._bent(z, gap)
             after, turned = self._update(state, sense, z, gap, slip, slope)
             if (after == state).all() and (turned == sense).all() and settled:
                 return z, state, sense
@@ -576,7 +520,7 @@ class UnilateralConstraints:
         columns[:, place[self.of[slipping]]] += ratio * self.matrix[:, m + slipping]
         rest = -np.concatenate([self.gap, self.slip])[free]
         rows = columns[free]
-        ruled = np.flatnonzero(self._ruled & closed)
+        ruled = np.flatnonzero(self.ruled & closed)
         at = place[ruled]
         rows[at] *= self.share[ruled, None]
         rest[at] = soft[ruled] - self.soft[ruled] + pressure[ruled] / -slope[ruled]
@@ -592,92 +536,86 @@ class UnilateralConstraints:
         moved = self.matrix @ z
         return self.gap + moved[: self.m], self.slip + moved[self.m :]
 
-    def _follow(self, soft: Floats) -> tuple[Floats, Floats]:
-        """Pressures of the laws and their derivatives by the gap, zero elsewhere."""
-        pressure, slope = np.zeros(self.m), np.zeros(self.m)
-        for rows, law in self.laws:
-            pressure[rows], slope[rows] = law(rows, soft[rows])
-        return pressure, slope
+    def _bent(self, z: Floats, gap: Floats) -> tuple[Floats, Floats, Floats, bool]:
+        """Gaps of laws, their pressures and derivatives, and whether the forces have these."""
+        soft = self.soft + self.share * (gap - self.gap)
+        pressure, slope = self.law(soft)
+        missed = np.abs(z[: self.m] - pressure)
+        rounding = COMPLIANCE * pressure.max(initial=0.0) - slope * self.tolerance
+        return soft, pressure, slope, bool((missed <= rounding)[self.ruled].all())
 
     def _update(
         self, state: States, sense: Floats, z: Floats, gap: Floats, slip: Floats, slope: Floats
     ) -> tuple[States, Floats]:
         p, q = z[: self.m], z[self.m :]
-        hard, of = ~self._ruled, self.of
+        hard, of = ~self.ruled, self.of
         after = state.copy()
         after[hard & (state == OPEN) & (gap < -self.tolerance)] = CLOSED
-        after[self._ruled & (state == OPEN) & (slope != 0.0)] = CLOSED
+        after[self.ruled & (state == OPEN) & (slope != 0.0)] = CLOSED
         slips = ((state == CLOSED) & ~self.tied)[of]
-        slips &= np.abs(q) > self.friction * p[of] * (1.0 + ROUNDING)
+        slips &= np.abs(q) > self.friction * p[of] * (1.0 + COMPLIANCE)
         after[of[slips]] = SLIPPING
         sense = np.where(slips, np.where(q > 0.0, 1.0, -1.0), sense)
         turned = (state == SLIPPING)[of] & (sense * slip > self.tolerance[of])
         after[of[turned]] = CLOSED
         after[hard & (state != OPEN) & (p < 0.0)] = OPEN
-        after[self._ruled & (slope == 0.0)] = OPEN
+        after[self.ruled & (slope == 0.0)] = OPEN
         after[self.tied] = CLOSED
         return after, sense
 
-    # -- sweeps ------------------------------------------------------------------------
+    # -- the whole complementarity problem ---------------------------------------------
 
-    def _sweep(self) -> Floats | None:
-        """Forces by Gauss and Seidel's method with projections, shape (m + t,)."""
-        m, d = self.m, self._diagonal
+    def _pivoted(self) -> Floats | None:
+        """Forces by Lemke's method, shape (m + t,); laws are linearized at their gaps.
+
+        With ``a = mu p + q`` and the slip as the difference of two, its unknowns are p, a and the
+        slip backwards; the gap, the slip forwards and ``2 mu p - a`` go with them.
+        """
         rest = np.concatenate([self.gap, self.slip])
-        law_of = {i: law for rows, law in self.laws for i in rows.tolist()}
-        tangents = dict(zip(self.of.tolist(), range(m, m + self.t), strict=True))
-        z = np.zeros(m + self.t)
-        size = max(float(np.abs(rest).max()), float(self.tolerance.max()))
-        for _ in range(SWEEPS):
-            change = 0.0
-            for i in range(m):
-                for row in (i, tangents.get(i, -1)):
-                    if row < 0 or d[row] <= 0.0:
-                        continue
-                    old, moved = z[row], float(self.matrix[row] @ z)
-                    new = old - (rest[row] + moved) / d[row]
-                    if row >= m and not self.tied[i]:
-                        most = self.friction[row - m] * z[i]
-                        new = min(max(new, -most), most)
-                    elif row < m and i in law_of:
-                        start = self.soft[i] + self.share[i] * (moved - d[i] * old)
-                        new = _balance(law_of[i], i, start, float(self.share[i] * d[i]))
-                    elif row < m and not self.tied[i]:
-                        new = max(new, 0.0)
-                    z[row] = new
-                    change = max(change, abs(new - old) * d[row])
-            if change <= ROUNDING * size:
+        ridge = COMPLIANCE * self._diagonal
+        ridge[: self.m][self.ruled] = 0.0
+        matrix = self.matrix + np.diag(ridge)
+        # What is tied has no choice: it is eliminated.
+        held = np.concatenate([self.tied, self.tied[self.of]])
+        free = ~held
+        across = matrix[np.ix_(free, held)]
+        own = np.column_stack([matrix[np.ix_(held, free)], rest[held]])
+        tied = np.linalg.solve(matrix[np.ix_(held, held)], own)
+        matrix = matrix[np.ix_(free, free)] - across @ tied[:, :-1]
+        start = rest[free] - across @ tied[:, -1]
+        normal, tangent = np.flatnonzero(~self.tied), np.flatnonzero(~self.tied[self.of])
+        n, t, ruled = len(normal), len(tangent), np.flatnonzero(self.ruled[normal])
+        unit = 1.0 / np.sqrt(np.maximum(np.diagonal(matrix), 1e-300))
+        matrix = unit[:, None] * matrix * unit
+        bound = np.zeros((t, n))
+        of = np.searchsorted(normal, self.of[tangent])
+        bound[np.arange(t), of] = self.friction[tangent] * unit[of] / unit[n:]
+        law, soft, eye = normal[ruled], self.soft, np.eye(t)
+        for _ in range(CHANGES):
+            pressure, slope = self.law(soft)
+            acts = slope[law] < 0.0
+            give = np.where(acts, -1.0 / np.where(acts, slope[law], 1.0), 0.0)
+            rows, y = matrix.copy(), unit * start
+            rows[ruled] *= (acts * self.share[law])[:, None]
+            rows[ruled, ruled] += give * unit[ruled] ** 2
+            moved = self.soft[law] + self.share[law] * (start - rest[free])[ruled] - soft[law]
+            y[ruled] = unit[ruled] * (moved - pressure[law] * give)
+            size = float(np.abs(y).max(initial=0.0)) or 1.0
+            y[ruled[~acts]] = size  # a law that does not press at its gap is open
+            of_p = rows[:, :n] - rows[:, n:] @ bound
+            table = [
+                [of_p[:n], rows[:n, n:], np.zeros((n, t))],
+                [of_p[n:], rows[n:, n:], eye],
+                [2.0 * bound, -eye, 0.0 * eye],
+            ]
+            found = lemke(np.append(y / size, np.zeros(t)), np.block(table))
+            if found is None:
+                return None
+            p, a = size * found[0][:n], size * found[0][n : n + t]
+            z = np.zeros(self.m + self.t)
+            z[free] = unit * np.append(p, a - bound @ p)
+            z[held] = -(tied[:, :-1] @ z[free] + tied[:, -1])
+            soft, _, _, settled = self._bent(z, self._motion(z)[0])
+            if settled:
                 return z
         return None
-
-    def _read(self, z: Floats) -> tuple[States, Floats]:
-        """States and slip directions from forces."""
-        p, q = z[: self.m], z[self.m :]
-        state = np.where((p > 0.0) | self.tied, CLOSED, OPEN).astype(np.int8)
-        bound = self.friction * p[self.of]
-        slips = (np.abs(q) >= bound * (1.0 - ROUNDING)) & (p[self.of] > 0.0) & ~self.tied[self.of]
-        state[self.of[slips]] = SLIPPING
-        return state, np.where(q > 0.0, 1.0, -1.0)
-
-
-def _balance(law: Law, row: int, start: float, rise: float) -> float:
-    """Pressure of a law at the gap that it causes, ``start + rise p``."""
-
-    def pressure(p: float) -> float:
-        return float(law(np.array([row]), np.array([start + rise * p]))[0][0])
-
-    low, high = 0.0, pressure(0.0)
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if pressure(middle) > middle else (low, middle)
-    return 0.5 * (low + high)
-
-
-def forward_contact(
-    system: System, account: Energies, dt: float
-) -> ForwardContact | NoForwardContact:
-    """Contact of an explicit step, with or without pairs."""
-    contact = system.term(ContactTerm)
-    if not contact.pairs:
-        return NoForwardContact(system.n_dofs)
-    return ForwardContact(contact, account, dt)

@@ -26,18 +26,24 @@ if TYPE_CHECKING:
     from corota.analysis.linear.types import Kind
     from corota.arrays import Bools, Floats, Ints
 
+    States = list[NDArray[np.int8]]
+
 
 #: States of a constraint, as the laws of the core number them.
 OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Rounding bound: relative difference of lengths, areas, parts of a way and forces that is
 #: rounding.
 SAME = 1e-9
-#: Length over an edge that is none: depth that a fixed surface may be pressed into another fixed
-#: one, and the slip that turns the friction of a node round whose stiffness does not count.
+#: Length over an edge that is none: depth up to which a node touches (a rest of Newton's method, as
+#: where a node of the other side carries both), that a fixed surface may be pressed into another
+#: fixed one, and the slip that turns the friction of a node round whose stiffness does not count.
 SMALL = 1e-6
 #: Regularization of redundant constraints: compliance of closed ones relative to that of their
 #: nodes: constraints that follow from others then leave a matrix regular, and share the force.
 COMPLIANCE = 1e-10
+#: Entries of a table that is filled at once, and of a matrix that is kept dense (memory and cost
+#: alone).
+AT_ONCE = 100_000
 #: Bisections of an interval down to its rounding.
 HALVINGS = 44
 #: Tries without progress, or returns of a set of states, before all states are chosen together or a
@@ -192,6 +198,31 @@ def mean(weighted: Floats, area: Floats, full: Floats, alone: Floats | float = 0
     """Weighted gaps or slips over their areas [length]; `alone` without an opposite surface."""
     seen = covered(area, full)
     return np.where(seen, weighted / np.where(seen, area, 1.0), alone)
+
+
+@dataclass
+class RightHandSides:
+    """Right-hand sides of one linearization, one per column.
+
+    Parameters
+    ----------
+    force, constrained : ndarray, shape (n_dofs, k)
+        Of equilibrium, and prescribed changes at constrained dofs.
+    own : ndarray, shape (k,)
+        Share of the contact residual: 1 in a Newton correction, 0 in a rate.
+    rows : ndarray, shape (n_multipliers, k), or None
+        Added to the rows of the multipliers.
+    """
+
+    force: Floats
+    constrained: Floats
+    own: Floats
+    rows: Floats | None = None
+
+
+def sticking(states: States) -> States:
+    """States in which what slips sticks."""
+    return [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
 
 
 def no_contact() -> ContactState:

@@ -18,17 +18,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.failure import GiveUp
-from corota.analysis.terms.contact.gaps import HALVINGS, WAITED, Kink
-from corota.analysis.terms.contact.problem import RightHandSides
+from corota.analysis.terms.contact.gaps import HALVINGS, WAITED, Kink, RightHandSides
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.terms.contact.equations import ContactEquations
     from corota.analysis.terms.contact.gaps import ContactState
     from corota.analysis.terms.contact.pair import Terms
-    from corota.analysis.terms.contact.problem import ContactProblem
     from corota.analysis.terms.term import StatePoint
     from corota.arrays import Floats, Ints
 
@@ -207,7 +206,7 @@ def _kink(
 OUTSIDE = 2.0
 
 
-def keeps_kink(problem: ContactProblem, at: Evaluation) -> bool:
+def keeps_kink(problem: ContactEquations, at: Evaluation) -> bool:
     """Whether the correction is one at a kink; looks for one where there is no progress."""
     if problem.kink is not None:
         problem.beyond += problem.kink.excess > 0.0
@@ -246,7 +245,7 @@ def _to_and_fro(places: list[Floats]) -> bool:
 
 
 def along_kink(
-    problem: ContactProblem, at: Evaluation, right_sides: RightHandSides
+    problem: ContactEquations, at: Evaluation, right_sides: RightHandSides
 ) -> tuple[Floats, int] | None:
     """Newton correction with the force that the kink carries as an unknown."""
     kink = problem.kink

@@ -22,8 +22,9 @@ from corota.analysis.terms.contact.gaps import (
     discrete_gradient,
     mean,
 )
-from corota.analysis.terms.contact.setup import contact_core, tie_core
+from corota.analysis.terms.contact.setup import make_core
 from corota.arrays import distinct
+from corota.mesh.parts import components
 from corota.model.contact import METHODS, ContactPair, RigidCurve, Tie
 
 if TYPE_CHECKING:
@@ -47,21 +48,16 @@ if TYPE_CHECKING:
     ]
 
 #: Proximal term of dependent constraints: change of the pressure of a corner beside a closed node
-#: per error of its gap, relative to its stiffness: in the first correction, its factor from each to
-#: the next, and its least value. It keeps dependent constraints solvable. If it stayed large, a
+#: per error of its gap, relative to its stiffness. That of the first correction; a tenth in each
+#: that follows, its square at last. It keeps dependent constraints solvable. If it stayed large, a
 #: corner that is almost at the node would take over its pressure in many corrections; it is zero in
 #: what they converge to.
-REDUNDANT, FADES, LEAST = 1e-4, 0.1, 1e-8
+REDUNDANT = 1e-4
 #: Discretization at the ends of the master: covered fraction of its area below which a node passes
-#: its part to a neighbor.
+#: its part to a neighbor, and twice that from which it takes it back for good.
 WEAK = 0.2
-#: Discretization at the ends of the master: covered fraction above which a node takes its part back
-#: for good.
-AMPLE = 0.5
 #: Edges by which its friction would move a slave node whose stiffness does not count.
 WEIGHTLESS = 0.1
-#: Friction work: share of the friction that a surface can bear above which it slides as a whole.
-TURNS_BACK = 0.5
 
 
 class Pair:
@@ -100,8 +96,7 @@ class Pair:
         self.separates = isinstance(item, ContactPair) and item.separates
         #: Whether it acts in the step, and the number of the step in which it began to.
         self.active, self.entered = True, 0
-        core = tie_core(system, item) if isinstance(item, Tie) else contact_core(system, item)
-        self.core, self.slave, self.master, self.reach, self.depth = core
+        self.core, self.slave, self.master, self.reach, self.depth = make_core(system, item)
         self.nodes = np.asarray(self.core.nodes, np.int64)
         self.n = len(self.nodes)
         #: Whether friction acts, in some step at least, and its coefficients now.
@@ -203,7 +198,9 @@ class Pair:
     @cached_property
     def surface(self) -> Ints:
         """Number of the connected piece of slave surface of each constraint, shape (n,)."""
-        return _surfaces(self.slave.nodes, self.nodes)
+        edges = self.slave.nodes
+        ends = np.concatenate([edges[:, :2], edges[:, ::2][edges[:, 2] >= 0]])
+        return components(ends[:, 0], ends[:, 1], len(self.reference))[self.nodes]
 
     def evaluate(self, x: Floats, old: Floats, nlgeom: bool, acts: bool = True) -> Terms:
         """Gaps at positions `x`, slips since the committed positions `old`; shapes (n_nodes, 3).
@@ -402,7 +399,7 @@ class Pair:
             area = raw["total_area"]
             if self.frozen:
                 # An iterate far from the end of the increment may have seen little.
-                ample = (area >= AMPLE * self.full) & ~self.held_ends
+                ample = (area >= 2.0 * WEAK * self.full) & ~self.held_ends
                 self.owner = np.where(ample, np.arange(self.n), self.owner)
             else:
                 self.owner = self._owners(area)
@@ -570,7 +567,7 @@ class Pair:
         """Prepare for a correction, of this number in the attempt."""
         # The owners of partly covered nodes may alternate.
         self.frozen = corrections > WAITED
-        self.redundant = max(REDUNDANT * FADES ** (corrections - 1), LEAST)
+        self.redundant = REDUNDANT * max(0.1 ** (corrections - 1), REDUNDANT)
 
     def rows(
         self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats, slip_direction: Floats
@@ -687,10 +684,10 @@ class Pair:
         bound = self.bound(p)
         limited = np.isfinite(bound)
         total = float((now * np.abs(q)).sum())
-        # Where a sliding body turns back, the pressure that balances its friction turns at once.
+        # Where a body turns back that slid with most of its friction, that turns at once.
         slid = float((was * last).sum())
         whole = float((was * np.where(limited, bound, np.abs(last))).sum())
-        turns = slid * float((now * q).sum()) < 0.0 and abs(slid) > TURNS_BACK * whole
+        turns = slid * float((now * q).sum()) < 0.0 and 2.0 * abs(slid) > whole
         rates = turns or self.start is not None
         stays = np.where(closed | (total == 0.0), np.minimum(was, now), 0.0)
         begin = q if rates else np.where((q != 0.0) & limited, np.sign(q) * bound, last)
@@ -709,22 +706,6 @@ class Pair:
             grown = left - float((leaves * at_first).sum())
             self.friction_work += (1.0 - end) * max(left, 0.0) * way
             self.beyond_trapezoid += 0.5 * max(grown, 0.0) * way + (0.5 * comes if turns else 0.0)
-
-
-def _surfaces(edges: Ints, nodes: Ints) -> Ints:
-    """Number of the connected piece of surface that each of the nodes lies on."""
-    from scipy.sparse import coo_array  # takes longer to import than a small job to solve
-    from scipy.sparse.csgraph import connected_components
-
-    if not len(edges):
-        return np.arange(len(nodes), dtype=np.int64)
-    pairs = np.concatenate([edges[:, :2], edges[:, ::2][edges[:, 2] >= 0]])
-    ids, ends = np.unique(pairs, return_inverse=True)
-    ends = ends.reshape(-1, 2)
-    graph = coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), (len(ids), len(ids)))
-    number = connected_components(graph, directed=False)[1]
-    out: Ints = number[np.searchsorted(ids, nodes)].astype(np.int64)
-    return out
 
 
 __all__ = ["CLOSED", "OPEN", "SLIPPING", "Pair", "Terms"]

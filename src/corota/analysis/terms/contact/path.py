@@ -23,8 +23,15 @@ import numpy as np
 from corota.analysis.path_system import NOT_CONSERVATIVE, Metric, Point, SmoothPath, Tangent
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import ContactEquations
-from corota.analysis.terms.contact.gaps import CHANGES, CLOSED, OPEN, SAME, SLIPPING, covered
-from corota.analysis.terms.contact.problem import RightHandSides
+from corota.analysis.terms.contact.gaps import (
+    CHANGES,
+    CLOSED,
+    OPEN,
+    SAME,
+    SLIPPING,
+    RightHandSides,
+    covered,
+)
 from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:

@@ -24,16 +24,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import SAME, covered
+from corota.analysis.terms.contact.gaps import SAME, RightHandSides, covered, sticking
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
-from corota.analysis.terms.contact.problem import RightHandSides, sticking
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.terms.contact.problem import ContactProblem
+    from corota.analysis.terms.contact.equations import ContactEquations
     from corota.arrays import Bools, Floats, Ints
 
     States = list[NDArray[np.int8]]
@@ -180,14 +179,14 @@ class Pivoting:
 
     Parameters
     ----------
-    problem : ContactProblem
+    problem : ContactEquations
     at : Evaluation
     right_sides : RightHandSides
         One right-hand side.
     """
 
     def __init__(
-        self, problem: ContactProblem, at: Evaluation, right_sides: RightHandSides
+        self, problem: ContactEquations, at: Evaluation, right_sides: RightHandSides
     ) -> None:
         self.problem, self.at, self.right_sides = problem, at, right_sides
         self.pairs = list(problem.pairs(at.contact_state))
@@ -527,7 +526,7 @@ class Pivoting:
         return out, slip_direction
 
 
-def pivoted(problem: ContactProblem, at: Evaluation, right_sides: RightHandSides) -> Found | None:
+def pivoted(problem: ContactEquations, at: Evaluation, right_sides: RightHandSides) -> Found | None:
     """A correction with states from the whole linearized problem; None if there is none."""
     pairs = list(problem.pairs(at.contact_state))
     first = problem.term.states(at.contact_state.terms, at.contact_state.multipliers)
@@ -554,7 +553,7 @@ def _sliding(c: Floats, m: Floats, kinds: list[tuple[int, int, str]]) -> Bools:
     return out
 
 
-def _small(problem: ContactProblem) -> float:
+def _small(problem: ContactEquations) -> float:
     """Force that counts as zero."""
     scales = problem.system.scales
     return SAME * max(scales.force, scales.zero_force)

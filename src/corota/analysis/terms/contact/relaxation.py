@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.newton import ResidualNorms, Settings
     from corota.analysis.terms.contact.pair import Terms
-    from corota.analysis.terms.contact.problem import ContactProblem
     from corota.arrays import Floats
 
 
@@ -290,7 +289,7 @@ class _Forces(ForwardContact):
 
 
 def come_to_rest(
-    problem: ContactProblem,
+    problem: ContactEquations,
     u: Floats,
     left: Floats,
     step_time: float,
@@ -316,7 +315,7 @@ def come_to_rest(
         return None  # eliminated dofs make the mass matrix full
     held = system.conditions.constrained
     u, v = u.copy(), np.zeros_like(u)
-    contact = _Forces(problem.term, Energies(system), 1.0)
+    contact = _Forces(system, Energies(system), 1.0)
     contact.remains = remains
     parts = max(1, int(np.ceil(float(np.abs(left).max()) / (LONGEST_STEP * edge))))
     mass, heavier = np.ones_like(u), 1.0

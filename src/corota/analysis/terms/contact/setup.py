@@ -14,6 +14,7 @@ Source: C. de Boor, *A Practical Guide to Splines* (2001), ch. IX.
 from __future__ import annotations
 
 import math
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
@@ -28,9 +29,11 @@ from corota.mesh.kinds import EDGES
 from corota.mesh.parts import part_of_cells, part_of_nodes
 from corota.model import elements
 from corota.model.constraints import Coupling
-from corota.model.contact import ContactPair, RigidCurve, Tie, joint_thickness
+from corota.model.contact import ContactPair, RigidCurve, Tie, edges_or_nodes, joint_thickness
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from corota.analysis.numbered_model import NumberedModel
     from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
@@ -79,15 +82,8 @@ class Surface:
 
     def take(self, rows: Ints) -> Surface:
         """Some of the edges."""
-        return Surface(
-            self.name,
-            self.edges[rows],
-            self.nodes[rows],
-            self.bulge[rows],
-            self.thickness[rows],
-            self.length[rows],
-            self.half[rows],
-        )
+        parts = ("edges", "nodes", "bulge", "thickness", "length", "half")
+        return Surface(self.name, *(getattr(self, part)[rows] for part in parts))
 
     def repeated(self, images: Ints) -> Surface:
         """The surface on the nodes of its images, one row of `images` for each."""
@@ -114,6 +110,15 @@ def _refused(item: ContactPair | Tie, why: str) -> ModelError:
     """The error of a pair or tie that is refused."""
     kind = "tie" if isinstance(item, Tie) else "contact pair"
     return ModelError(f"{kind} {item.name!r}: {why}", item.where)
+
+
+@contextmanager
+def _refusing(item: ContactPair | Tie) -> Iterator[None]:
+    """Name the pair or tie that the core refuses."""
+    try:
+        yield
+    except ValueError as error:
+        raise _refused(item, str(error)) from None
 
 
 def _start(mesh: Mesh) -> Floats:
@@ -178,15 +183,6 @@ def line_surface(system: NumberedModel, name: str, edges: Ints, item: ContactPai
     return Surface(name, edges, nodes, bulge, width, length, half)
 
 
-def node_surface(system: NumberedModel, name: str, nodes: Ints, item: ContactPair | Tie) -> Surface:
-    """Single nodes as a slave surface without thickness, each with the area 1."""
-    if not len(nodes):
-        raise _refused(item, f"node set {name!r} is empty")
-    spacing = _spacing(system)[nodes]
-    edges, flat = np.zeros((0, 3), np.int64), np.zeros(0)
-    return Surface(name, edges[:, :2], edges, flat, flat, spacing, flat, distinct(nodes))
-
-
 def _spacing(system: NumberedModel) -> Floats:
     """Distance to the nearest node of the same cell, shape (n_nodes,)."""
     mesh = system.model.mesh
@@ -206,36 +202,46 @@ def line_core(
     system: NumberedModel,
     item: ContactPair | Tie,
     slave: Surface,
-    master: Surface | RigidCurve,
+    master: Surface | None,
     reach: float,
-    depth: float,
 ) -> Core:
-    """The core's pair, its surfaces, its search distance and the depth of a penetration it sees.
-
-    Raises
-    ------
-    ModelError
-        If such a pair is not supported.
-    """
-    _check_lines(system, item, slave, master)
-    slave.pointwise = True
-    sides = [slave] if isinstance(master, RigidCurve) else [slave, master]
-    reach += max(0.0, *(float(side.half.max(initial=0.0)) for side in sides))
-    flat = np.zeros(0)
-    other = none = (np.zeros((0, 3), np.int64), flat, flat)
-    rigid = body = None
-    if isinstance(master, RigidCurve):
-        rigid = (master.backward, *_reference(master), master.turns)
+    """See :func:`make_core`, for lines and single nodes."""
+    tied, curve = isinstance(item, Tie), item.master
+    sides = [slave] if master is None else [slave, master]
+    rigid, other = None, (np.zeros((0, 3), np.int64), np.zeros(0), np.zeros(0))
+    none = other
+    if getattr(item, "smooth", False):
+        raise _refused(
+            item, "a pair with a line or with single nodes is not smoothed; leave smooth out"
+        )
+    if isinstance(curve, RigidCurve):
+        rigid = (curve.backward, *_reference(curve), curve.turns)
+    elif master is None:
+        raise _refused(
+            item,
+            "a line, or single nodes, cannot meet themselves; "
+            "make two surfaces of the parts that meet",
+        )
+    elif master.points is not None:
+        raise _refused(
+            item,
+            f"a master needs edges or lines, and {master.name!r} is a node "
+            "set; exchange slave and master",
+        )
     else:
-        body, other = master, (master.nodes, master.bulge, master.half)
-    tied = isinstance(item, Tie)
+        _check_shared(system, item, slave, master)
+        other = (master.nodes, master.bulge, master.half)
+    bodies = [] if tied else [side for side in sides if not of_lines(side)]
+    least = np.inf if tied else reach
+    depth = min((float(_thickness(system, body).max()) for body in bodies), default=least)
+    slave.pointwise = True
+    reach += max(0.0, *(float(side.half.max(initial=0.0)) for side in sides))
     points = slave.node_list if tied or slave.points is not None else np.zeros(0, np.int64)
-    own = none if len(points) else (slave.nodes, slave.bulge, slave.half)
-    try:
+    with _refusing(item):
         core = _core.line_contact(
             _start(system.model.mesh),
-            own,
-            slave.thickness if not len(points) else flat,
+            none if len(points) else (slave.nodes, slave.bulge, slave.half),
+            slave.thickness if not len(points) else np.zeros(0),
             points,
             other,
             rigid,
@@ -244,38 +250,8 @@ def line_core(
             margin=reach if tied else 0.5 * reach,
             depth=depth,
         )
-    except ValueError as error:
-        raise _refused(item, str(error)) from None
-    core.carry(carrier(system, slave), carrier(system, body))
-    return core, slave, body, reach, depth
-
-
-def _check_lines(
-    system: NumberedModel,
-    item: ContactPair | Tie,
-    slave: Surface,
-    master: Surface | RigidCurve,
-) -> None:
-    if getattr(item, "smooth", False):
-        raise _refused(
-            item, "a pair with a line or with single nodes is not smoothed; leave smooth out"
-        )
-    if isinstance(master, RigidCurve):
-        return
-    if master.points is not None:
-        raise _refused(
-            item,
-            f"a master needs edges or lines, and {master.name!r} is a node "
-            "set; exchange slave and master",
-        )
-    shared = np.intersect1d(slave.node_list, master.node_list)
-    if len(shared):
-        raise _refused(
-            item,
-            f"{slave.name!r} and {master.name!r} share node "
-            f"{system.model.mesh.node_labels[shared[0]]}, so they cannot separate there; remove "
-            "it from one of them",
-        )
+    core.carry(carrier(system, slave), carrier(system, master))
+    return core, slave, master, reach, depth
 
 
 # -- masters without kinks -----------------------------------------------------------------
@@ -374,17 +350,13 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
     """
     mesh = system.model.mesh
     name = where if isinstance(where, str) else "edges"
-    if not isinstance(where, str) and np.ndim(where) == 1 and len(where):
-        return node_surface(system, "nodes", np.asarray(where, np.int64), item)
-    if isinstance(where, str):
-        if where not in mesh.edge_sets and where in mesh.node_sets:
-            return node_surface(system, where, mesh.node_sets[where], item)
-        if where not in mesh.edge_sets:
-            known = ", ".join(mesh.edge_sets) or "none"
-            raise _refused(item, f"no surface named {where!r}; there are: {known}")
-        edges = mesh.edge_sets[where]
-    else:
-        edges = np.asarray(where, np.int64).reshape(-1, 2)
+    edges, single = edges_or_nodes(mesh, where)
+    if len(single):
+        # Without thickness, each with the area 1.
+        name = name if isinstance(where, str) else "nodes"
+        none, flat = np.zeros((0, 3), np.int64), np.zeros(0)
+        spacing = _spacing(system)[single]
+        return Surface(name, edges, none, flat, flat, spacing, flat, distinct(single))
     if not len(edges):
         raise _refused(item, f"surface {name!r} is empty")
     edges = edges[np.sort(np.unique(edges, axis=0, return_index=True)[1])]
@@ -478,46 +450,42 @@ def _turns_of_contour(points: Floats, nodes: Ints) -> Floats:
     return np.asarray(np.where(turn > np.pi - SAME, turn - 2.0 * np.pi, turn))
 
 
-def contact_core(system: NumberedModel, item: ContactPair) -> Core:
+def make_core(system: NumberedModel, item: ContactPair | Tie) -> Core:
     """The core's pair, its surfaces, its search distance and the depth of a penetration it sees.
+
+    Slave edges out of the tolerance of a tie are not tied.
 
     Raises
     ------
     ModelError
-        If the surfaces cannot come into contact.
+        If the surfaces cannot come into contact, or such a pair is not supported.
     """
-    mesh = system.model.mesh
+    mesh, pair = system.model.mesh, None if isinstance(item, Tie) else item
     slave = surface(system, item.slave, item)
-    longest = float(slave.length.max())
     master: Surface | None = None
-    if not item.itself and not isinstance(item.master, RigidCurve):
+    if not isinstance(item.master, RigidCurve) and not (pair and pair.itself):
         master = surface(system, item.master, item)
-        if item.images is not None:
-            master = master.repeated(item.images)
-        longest = max(longest, float(master.length.max()))
-    reach = item.reach or REACH * longest
-    if of_lines(slave) or (master is not None and of_lines(master)):
-        if item.itself:
-            raise _refused(
-                item,
-                "a line, or single nodes, cannot meet themselves; "
-                "make two surfaces of the parts that meet",
-            )
-        against = item.master if isinstance(item.master, RigidCurve) else master
-        assert against is not None
-        bodies = [s for s in (slave, master) if s is not None and not of_lines(s)]
-        depth = min((float(_thickness(system, body).max()) for body in bodies), default=reach)
-        return line_core(system, item, slave, against, reach, depth)
+        if pair and pair.images is not None:
+            master = master.repeated(pair.images)
+    longest = max(float(s.length.max()) for s in (slave, master) if s is not None)
+    if isinstance(item, Tie):
+        reach = item.tolerance or 0.1 * longest
+    else:
+        reach = item.reach or REACH * longest
+    if of_lines(slave) or (pair and master is not None and of_lines(master)):
+        return line_core(system, item, slave, master, reach)
     if master is not None:
         _check_pair(system, item, slave, master)
+    if pair is None:
+        return core_of(mesh, item, slave, master, reach, np.inf), slave, master, reach, np.inf
     thickness = _thickness(system, slave)
     # Deeper inside a body, the core takes the opposite side for that of another body.
-    same = item.itself
-    if item.images is not None and master is not None:
+    same = pair.itself
+    if pair.images is not None and master is not None:
         part = part_of_cells(mesh)
         same = bool(np.isin(part[slave.edges[:, 0]], part[master.edges[:, 0]]).any())
     depth = 0.5 * float(thickness.min()) if same else float(thickness.max())
-    if item.itself:
+    if pair.itself:
         slave = along_contour(slave, mesh.points)
     if master is not None:
         slave.thickness[:] = _joint(mesh.points, slave, master)
@@ -544,7 +512,7 @@ def _joint(points: Floats, slave: Surface, master: Surface) -> Floats:
 
 def core_of(
     mesh: Mesh,
-    item: ContactPair,
+    item: ContactPair | Tie,
     slave: Surface,
     master: Surface | None,
     reach: float,
@@ -558,27 +526,21 @@ def core_of(
         If the core refuses it.
     """
     own = _start(mesh), slave.nodes, slave.bulge, slave.thickness
-    # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
-    facts: Any = {
-        "method": item.method,
-        "reach": reach,
-        "margin": 0.5 * reach,
-        "corners": item.law is None,
-    }
-    try:
-        if item.itself:
-            return _core.Contact.itself(*own, **facts)
+    facts: Any = {"method": "tie", "reach": reach, "margin": reach}
+    if isinstance(item, ContactPair):
+        # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
+        facts |= {"method": item.method, "margin": 0.5 * reach, "corners": item.law is None}
+    with _refusing(item):
         if isinstance(item.master, RigidCurve):
             node, point = _reference(item.master)
             rows, turns = item.master.backward, item.master.turns
             return _core.Contact.rigid(*own, rows, node, point, turns=turns, depth=depth, **facts)
-        assert master is not None
+        if master is None:
+            return _core.Contact.itself(*own, **facts)
         nodes, bulge, shapes = master.nodes, master.bulge, None
-        if item.smooth:
+        if getattr(item, "smooth", False):
             nodes, bulge, shapes = smoothed(mesh.points, master)
         return _core.Contact.edges(*own, nodes, bulge, master_shapes=shapes, depth=depth, **facts)
-    except ValueError as error:
-        raise _refused(item, str(error)) from None
 
 
 def of_lines(side: Surface) -> bool:
@@ -598,7 +560,7 @@ def _thickness(system: NumberedModel, slave: Surface) -> Floats:
     part = part_of_cells(mesh)
     boundary = boundary[np.isin(part[boundary[:, 0]], part[slave.edges[:, 0]])]
     ends = np.array([nodes[:2] for nodes in mesh.edge_nodes(boundary)])
-    x, inwards = mesh.points, -_normals(mesh.points, slave)
+    x, inwards = mesh.points, -outward(mesh.points[slave.nodes[:, :2]])
     start = x[slave.nodes[:, :2]].mean(axis=1)[:, None]
     first, along = x[ends[:, 0]][None], (x[ends[:, 1]] - x[ends[:, 0]])[None]
     away, way = first - start, np.broadcast_to(inwards[:, None], (len(inwards), len(ends), 2))
@@ -613,29 +575,17 @@ def _thickness(system: NumberedModel, slave: Surface) -> Floats:
     return found if len(found) else np.full(1, np.inf)
 
 
-def tie_core(system: NumberedModel, item: Tie) -> Core:
-    """Pair of the core for a tie; slave edges out of its tolerance are not tied."""
-    slave, master = surface(system, item.slave, item), surface(system, item.master, item)
-    longest = float(max(slave.length.max(), master.length.max()))
-    reach = item.tolerance or 0.1 * longest
-    if of_lines(slave):
-        return line_core(system, item, slave, master, reach, np.inf)
-    _check_pair(system, item, slave, master)
-    try:
-        core = _core.Contact.edges(
-            _start(system.model.mesh),
-            slave.nodes,
-            slave.bulge,
-            slave.thickness,
-            master.nodes,
-            master.bulge,
-            method="tie",
-            reach=reach,
-            margin=reach,
+def _check_shared(
+    system: NumberedModel, item: ContactPair | Tie, slave: Surface, master: Surface
+) -> None:
+    shared = np.intersect1d(slave.node_list, master.node_list)
+    if len(shared):
+        raise _refused(
+            item,
+            f"surfaces {slave.name!r} and {master.name!r} share node "
+            f"{system.model.mesh.node_labels[shared[0]]}, so they cannot separate there; remove "
+            "it from one of them, give each body its own nodes, or use self-contact of one surface",
         )
-    except ValueError as error:
-        raise _refused(item, str(error)) from None
-    return core, slave, master, reach, np.inf
 
 
 def _check_pair(
@@ -654,15 +604,8 @@ def _check_pair(
         )
     if isinstance(item, Tie):
         return
-    shared = np.intersect1d(slave.node_list, master.node_list)
-    if len(shared):
-        raise _refused(
-            item,
-            f"surfaces {slave.name!r} and {master.name!r} share node "
-            f"{mesh.node_labels[shared[0]]}, so they cannot separate there; remove its edges "
-            "from one of them, give each body its own nodes, or use self-contact of one surface",
-        )
-    out_s, out_m = _normals(mesh.points, slave), _normals(mesh.points, master)
+    _check_shared(system, item, slave, master)
+    out_s, out_m = (outward(mesh.points[side.nodes[:, :2]]) for side in (slave, master))
     # No edges face each other: bodies may rotate, but not before contact.
     facing = -(out_s @ out_m.T).min() if len(out_s) * len(out_m) <= MOST_LOOKED_AT else 1.0
     towards = _towards(mesh.points, slave, master, out_s)
@@ -675,9 +618,10 @@ def _check_pair(
         )
 
 
-def _normals(x: Floats, found: Surface) -> Floats:
-    d = x[found.nodes[:, 1]] - x[found.nodes[:, 0]]
-    return np.asarray(np.column_stack([d[:, 1], -d[:, 0]]) / np.hypot(*d.T)[:, None])
+def outward(pieces: Floats) -> Floats:
+    """Unit normals of straight pieces of shape (m, 2, 2), to their right."""
+    along = pieces[:, 1] - pieces[:, 0]
+    return np.asarray(np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None])
 
 
 def _towards(x: Floats, slave: Surface, master: Surface, out: Floats) -> bool:

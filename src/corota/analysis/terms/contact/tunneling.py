@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, SLIPPING, covered
+from corota.analysis.terms.contact.gaps import AT_ONCE, CLOSED, OPEN, SAME, SLIPPING, SMALL, covered
+from corota.analysis.terms.contact.setup import outward
 from corota.errors import ModelError
 from corota.mesh.parts import nodes_of_cells, part_of_nodes, parts_without
 from corota.model.contact import RigidCurve, edges_or_nodes
@@ -35,16 +36,12 @@ if TYPE_CHECKING:
 #: Search radius: fraction of the reach, and of the width of a body, that a node may move without
 #: this check; in relaxation, fraction of the shortest slave edge from a position to the next.
 UNSEEN = 0.5
-#: Complementarity tolerance: depth over the reach up to which a node touches: a rest of Newton's
-#: method, as where a node of the other side carries both.
-TOUCHES = 1e-8
-#: Angle up to which an arc counts as straight: the way of a side that turns in an increment, and a
-#: piece of a rigid curve [rad].
+#: Angle up to which an arc counts as straight, of the way of a side that turns in an increment; and
+#: between a slave edge and the normal of a rigid curve up to which it faces neither side [rad].
 STRAIGHT = 0.1
-#: Nodes times pieces that are compared at once (memory alone).
-AT_ONCE = 1_000_000
-#: Note alone: depth from which a penetration is reported [edges].
-NAMED = 0.1
+#: Notes alone: depth of a penetration [edges], or height of facets over an overlap, from which it
+#: is reported; half of it where a pair does not press at all.
+NAMED = 0.05
 
 
 def passed(
@@ -85,7 +82,7 @@ def passed(
     # Bodies that turn together go along arcs: who passes goes through seen from either of them.
     sides = (old[nodes, :2], new[nodes, :2]), (first.reshape(-1, 2), last.reshape(-1, 2))
     turns = [_turn(*side) for side in sides]
-    common = abs(_turn_between(*turns)) <= STRAIGHT < abs(turns[0])
+    common = abs(math.remainder(turns[0] - turns[1], math.tau)) <= STRAIGHT < abs(turns[0])
     for turn in sorted(set(turns)) if common else [0.0]:
         c, s = math.cos(turn), math.sin(turn)
         back = np.array([[c, -s], [s, c]])
@@ -105,7 +102,7 @@ def passed(
         through = through[~closed[through]]
         start = starts()[through]
         share = times_of_crossing(
-            first, end, ends, old, seen, nodes[through], start, TOUCHES * pair.reach
+            first, end, ends, old, seen, nodes[through], start, SMALL * pair.edge
         )
         through = through[share < math.inf]
     return through
@@ -118,11 +115,6 @@ def _turn(old: Floats, new: Floats) -> float:
     return math.atan2(float(across.sum()), float((before * after).sum()))
 
 
-def _turn_between(one: float, other: float) -> float:
-    """Difference of two angles, up to half a turn [rad]."""
-    return math.remainder(one - other, math.tau)
-
-
 def outside(term: Any, k: int, moves: bool) -> Floats:
     """Distance from the other side from which each node of pair `k` starts outside, shape (n,).
 
@@ -130,7 +122,7 @@ def outside(term: Any, k: int, moves: bool) -> Floats:
     after the impact.
     """
     pair, committed = term.pairs[k], None if term.at is None else term.at.states
-    start = np.full(pair.n, -TOUCHES * pair.reach)
+    start = np.full(pair.n, -SMALL * pair.edge)
     if moves and math.isfinite(pair.depth):
         behind = pair.gaps_at(term, k, term.positions(term.u)).gap < 0.0
         if committed:
@@ -141,9 +133,9 @@ def outside(term: Any, k: int, moves: bool) -> Floats:
 
 def _width(pieces: Floats) -> float:
     """Least extent of a body that pieces go round; infinite where they end or go round a hole."""
-    (x, y), size = pieces.reshape(-1, 2).T, np.ptp(pieces.reshape(-1, 2), axis=0)
-    starts, stops = (np.round(pieces[:, end] / (SAME * size.max())) for end in (0, 1))
-    closed = np.array_equal(np.unique(starts, axis=0), np.unique(stops, axis=0))
+    points = pieces.reshape(-1, 2)
+    (x, y), size = points.T, np.ptp(points, axis=0)
+    closed = not alone(points, SAME * float(size.max())).any()
     twice = float((x[::2] * y[1::2] - x[1::2] * y[::2]).sum())
     return float(size.min()) if closed and twice > SAME * size.max() ** 2 else math.inf
 
@@ -267,11 +259,6 @@ def _beside(pieces: Floats, x: Floats) -> Bools:
     return np.asarray((along >= 0.0) & (along <= 1.0))
 
 
-#: Check of data: cosine between the normals of slave and curve from which the slave faces away; as
-#: far on the other side it faces the curve, and between them neither.
-BACK = 0.2
-
-
 def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
     """Refuse a slave surface whose body starts on the wrong side of a rigid curve.
 
@@ -292,82 +279,68 @@ def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
     curve = getattr(pair.item, "master", None)
     if not isinstance(curve, RigidCurve) or not curve.turns:  # no curve, or a gap element
         return
-    mesh = system.model.mesh
+    mesh, slave, size = system.model.mesh, pair.slave, SAME * float(pair.slave.length.max())
     pieces = other_side(pair, x, x)[0]
-    if pair.slave.pointwise:
-        _check_points(system, pair, pieces, x[:, :2])
+    if slave.pointwise:
+        # Lines and single nodes have no outer side of their own.
+        nodes, least = slave.node_list, size
+        distance, _, asked = signed_distances(pieces, x[nodes, :2], size)
+    else:
+        nodes, least = slave.nodes[:, 0], 0.0
+        ends = x[slave.nodes[:, :2], :2]
+        distance, best, asked = signed_distances(pieces, ends.mean(axis=1), size)
+        turned = (outward(ends) * outward(pieces)[best]).sum(axis=1)
+        asked &= np.abs(turned) >= STRAIGHT
+    nearest = int(np.argmin(np.where(asked, np.abs(distance), np.inf)))
+    # An edge that faces away is behind, or in front with its back to the curve.
+    away = distance[nearest] <= size if slave.pointwise else turned[nearest] >= STRAIGHT
+    if not asked[nearest] or not away:
         return
-    ends = x[pair.slave.nodes[:, :2], :2]
-    size = SAME * float(pair.slave.length.max())
-    distance, normal, inside = _signed(pieces, ends.mean(axis=1), size)
-    along = ends[:, 1] - ends[:, 0]
-    outward = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
-    turned = (outward * normal).sum(axis=1)
-    steep = np.abs(turned) < BACK
-    nearest = int(np.argmin(np.where(inside & ~steep, np.abs(distance), np.inf)))
-    if not inside[nearest] or turned[nearest] < BACK:
-        return
-    # The edge faces away: the body is behind, or in front with its back to the curve.
     part = part_of_nodes(mesh)
-    body = np.isin(part, part[pair.slave.node_list])
-    behind, _, inside = _signed(pieces, x[body, :2], size)
-    if not inside.any() or behind[inside].max() >= -behind[inside].min():
-        return
-    _refuse(system, pair, int(pair.slave.nodes[nearest, 0]), -float(distance[nearest]), size)
-
-
-def _check_points(system: NumberedModel, pair: Pair, pieces: Floats, x: Floats) -> None:
-    """The same for a line or single nodes, which have no outer side of their own."""
-    nodes, size = pair.slave.node_list, SAME * float(pair.slave.length.max())
-    distance, _, inside = _signed(pieces, x[nodes], size)
-    nearest = int(np.argmin(np.where(inside, np.abs(distance), np.inf)))
-    if not inside[nearest] or distance[nearest] > size:
-        return
-    # Springs end where they will, on either side, and a node with springs alone has no side.
-    mesh, springs = system.model.mesh, np.zeros(system.model.mesh.n_cells, bool)
-    for block in system.blocks:
-        springs[block.cells] = block.section.element.startswith("SPRING")
-    if not np.isin(nodes, nodes_of_cells(mesh, np.flatnonzero(~springs))).any():
-        return
-    part = parts_without(mesh, springs)
-    body, _, inside = _signed(pieces, x[np.isin(part, part[nodes])], size)
+    if slave.pointwise:
+        # Springs end where they will, on either side, and a node with springs alone has no side.
+        springs = np.zeros(mesh.n_cells, bool)
+        for block in system.blocks:
+            springs[block.cells] = block.section.element.startswith("SPRING")
+        if not np.isin(nodes, nodes_of_cells(mesh, np.flatnonzero(~springs))).any():
+            return
+        part = parts_without(mesh, springs)
+    body, _, inside = signed_distances(pieces, x[np.isin(part, part[slave.node_list]), :2], size)
     # What lies on the curve as a whole tells no side.
-    if not inside.any() or body[inside].max() >= -body[inside].min() - size:
+    if not inside.any() or body[inside].max() >= -body[inside].min() - least:
         return
-    _refuse(system, pair, int(nodes[nearest]), -float(distance[nearest]), size)
-
-
-def _refuse(system: NumberedModel, pair: Pair, node: int, depth: float, size: float) -> None:
-    curve = pair.item.master
-    assert isinstance(curve, RigidCurve)
-    label = system.model.mesh.node_labels[node]
-    place = (
-        "on it"
-        if abs(depth) <= size
-        else f"{abs(depth):.4g} {'behind' if depth > 0 else 'through'} it"
-    )
+    depth = -float(distance[nearest])
+    place = f"{abs(depth):.4g} {'behind' if depth > 0 else 'through'} it"
     name = f" {curve.name!r}" if curve.name else ""
     raise ModelError(
         f"contact pair {pair.item.name!r}: the slave surface starts on the wrong side of "
-        f"the rigid curve{name}: node {label} is nearest, {place}. "
+        f"the rigid curve{name}: node {mesh.node_labels[nodes[nearest]]} is nearest, "
+        f"{'on it' if abs(depth) <= size else place}. "
         "The deformable body belongs on the left of the curve's direction of travel; give its "
         "points in the other order (corota plot draws the rigid body shaded)",
         pair.item.where,
     )
 
 
-def _signed(pieces: Floats, points: Floats, same: float) -> tuple[Floats, Floats, Bools]:
-    """Signed distance to the nearest piece, positive in front, and the normal there.
+def alone(points: Floats, same: float) -> Bools:
+    """Which points have no other one of the list in their place."""
+    places = np.round(points / same)
+    _, which, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+    return np.asarray(count[which.ravel()] == 1)
+
+
+def signed_distances(pieces: Floats, points: Floats, same: float) -> tuple[Floats, Ints, Bools]:
+    """Signed distance to the nearest piece, positive to its right, and which piece this is.
 
     The last part of the result is whether the nearest point lies on the curve, not at a free end.
     """
     start, along = pieces[:, 0], pieces[:, 1] - pieces[:, 0]
-    square = (along**2).sum(axis=1)
-    normals = np.column_stack([along[:, 1], -along[:, 0]]) / np.sqrt(square)[:, None]
-    first, last = _free_ends(pieces, same)
+    square, normals = (along**2).sum(axis=1), outward(pieces)
+    first, last = np.split(alone(np.concatenate([pieces[:, 0], pieces[:, 1]]), same), 2)
     distance, best = np.empty(len(points)), np.empty(len(points), np.int64)
     share = np.empty(len(points))
-    for own in _parts(len(points), len(pieces)):
+    count = max(1, AT_ONCE // len(pieces))
+    for own in (slice(begin, begin + count) for begin in range(0, len(points), count)):
         away = points[own, None] - start
         t = (away * along).sum(axis=2) / square
         apart = away - np.clip(t, 0.0, 1.0)[:, :, None] * along
@@ -380,28 +353,12 @@ def _signed(pieces: Floats, points: Floats, same: float) -> tuple[Floats, Floats
         best[own], share[own] = k, t[rows, k]
         distance[own] = np.copysign(size[rows, k], height[rows, k])
     beyond = ((share < 0.0) & first[best]) | ((share > 1.0) & last[best])
-    return distance, normals[best], ~beyond
-
-
-def _free_ends(pieces: Floats, same: float) -> tuple[Bools, Bools]:
-    """Whether the first and last ends of pieces are free: no other end is there."""
-    joints = np.concatenate([pieces[:, 0], pieces[:, 1]])
-    free = np.empty(len(joints), bool)
-    for own in _parts(len(joints), len(joints)):
-        apart = joints[own, None] - joints
-        free[own] = (np.hypot(apart[:, :, 0], apart[:, :, 1]) <= same).sum(axis=1) == 1
-    return free[: len(pieces)], free[len(pieces) :]
-
-
-def _parts(rows: int, width: int) -> Iterator[slice]:
-    """Slices of rows of some width that are compared at once."""
-    count = max(1, AT_ONCE // max(width, 1))
-    return (slice(begin, begin + count) for begin in range(0, rows, count))
+    return distance, best, ~beyond
 
 
 def _depth(pieces: Floats, points: Floats) -> Floats:
     """Depth of points behind a curve, 0 before it and beyond its ends [length]."""
-    distance, _, inside = _signed(pieces, points, SAME * float(np.ptp(pieces)))
+    distance, _, inside = signed_distances(pieces, points, SAME * float(np.ptp(pieces)))
     return np.where(inside, np.maximum(-distance, 0.0), 0.0)
 
 
@@ -464,35 +421,23 @@ def _in_another(model: Model, u: Floats) -> list[str]:
         for own, other in (sides, sides[::-1]):
             nodes = free[np.isin(part[free], np.setdiff1d(own, other))]
             rim = edges[np.isin(part[edges[:, 0]], np.setdiff1d(other, own))]
-            if not len(rim):
+            if not len(rim) or not len(nodes):
                 continue
+            before, after = (
+                signed_distances(at[rim], at[nodes], SAME * float(np.ptp(at)))[0]
+                for at in (mesh.points, x)
+            )
             length = np.hypot(*(x[rim[:, 1]] - x[rim[:, 0]]).T)
-            inside = [k for k in nodes if _inside(x, rim, k) and not _inside(mesh.points, rim, k)]
-            depth = [_distance(x, rim, k) for k in inside]
-            if depth and max(depth) > NAMED * float(length.mean()):
-                deepest = int(np.argmax(depth))
+            depth = np.where(before >= -SAME * length.max(), -after, 0.0)
+            deepest = int(np.argmax(depth))
+            if depth[deepest] > NAMED * float(length.mean()):
                 notes.append(
                     f"contact pair {pair.name!r}: boundary nodes that are in no pair lie in the "
-                    f"other body ({len(inside)} of them), node "
-                    f"{mesh.node_labels[inside[deepest]]} by {depth[deepest]:.3g}. Give the "
+                    f"other body ({int((depth > 0.0).sum())} of them), node "
+                    f"{mesh.node_labels[nodes[deepest]]} by {depth[deepest]:.3g}. Give the "
                     "surfaces of the pair all edges that may meet"
                 )
     return notes
-
-
-def _inside(x: Floats, rim: Ints, node: int) -> bool:
-    """Whether a node is inside closed boundaries (m, 2), by the parity of crossings."""
-    (ax, ay), (bx, by) = x[rim[:, 0]].T, x[rim[:, 1]].T
-    spans = (ay > x[node, 1]) != (by > x[node, 1])
-    rise = np.where(spans, by - ay, 1.0)
-    return bool((spans & (ax + (x[node, 1] - ay) / rise * (bx - ax) > x[node, 0])).sum() % 2)
-
-
-def _distance(x: Floats, rim: Ints, node: int) -> float:
-    """Distance of a node from the nearest of some edges (m, 2) [length]."""
-    along, to = x[rim[:, 1]] - x[rim[:, 0]], x[node] - x[rim[:, 0]]
-    share = np.clip((to * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    return float(np.hypot(*(to - share[:, None] * along).T).min())
 
 
 def _surface_nodes(model: Model, surface: str | Ints) -> Ints:
