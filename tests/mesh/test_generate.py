@@ -11,6 +11,7 @@ import pytest
 
 from corota import mesh
 from corota.errors import InputError
+from corota.mesh.kinds import KINDS as KINDS_OF_CELLS
 from corota.mesh.quality import classify, jacobians
 
 KINDS = ("tri3", "tri6", "quad4", "quad8", "quad9")
@@ -213,3 +214,10 @@ def test_edges_are_found_by_their_ends() -> None:
 def test_wrong_arguments_are_named(call, text: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(InputError, match=text):
         call()
+
+
+@pytest.mark.parametrize("kind", [k for k in KINDS_OF_CELLS if k.startswith("quad")])
+def test_nodes_are_at_the_natural_coordinates_of_their_kind(kind):
+    cells = mesh.rectangle(2.0, 4.0, 1, 2, kind)
+    first = cells.points[cells.cells[0].nodes[0]]
+    assert first == pytest.approx(np.array(KINDS_OF_CELLS[kind].natural) + 1.0, abs=1e-15)

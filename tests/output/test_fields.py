@@ -23,7 +23,7 @@ def test_extrapolation_keeps_linear_fields(kind, points):
     rng = np.random.default_rng(points)
     at = rng.uniform(0.05, 0.45, (points, 2))
     nodes = np.array(KINDS[kind].natural)
-    matrix = extrapolation(shape_functions(kind, at))
+    matrix = extrapolation(kind, shape_functions(kind, at))
     assert matrix @ np.full(points, 7.0) == pytest.approx(np.full(len(nodes), 7.0), abs=1e-10)
     if points >= 3:
         values = 2.0 + 3.0 * at[:, 0] - 5.0 * at[:, 1]

@@ -13,7 +13,7 @@ from corota.arrays import Floats, Ints, distinct
 from corota.errors import InputError
 from corota.mesh.change import merge, placed_middles
 from corota.mesh.data import Cells, Mesh
-from corota.mesh.kinds import N_NODES, PLANAR
+from corota.mesh.kinds import KINDS, PLANAR
 from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     Kind = Literal["tri3", "tri6", "quad4", "quad8", "quad9"]
     Diagonal = Literal["right", "left", "alternate"]
 
-#: Nodes of a quadrilateral on its 3 x 3 lattice (row by row) in the order of a quad9.
-_LATTICE = np.array([0, 2, 8, 6, 1, 5, 7, 3, 4])
 #: Two triangles of a lattice: along the diagonal from lower left to upper right, or the other.
 _SPLIT = {
     "right": ((0, 2, 8, 1, 5, 4), (0, 8, 6, 4, 7, 3)),
@@ -359,7 +357,9 @@ def _build(lattice: Floats, nx: int, ny: int, cell: Kind, diagonal: Diagonal) ->
     if cell.startswith("tri"):
         cells, edges = _triangles(nodes9, (i + j).ravel(), cell, diagonal, sides)
     else:
-        cells = nodes9[:, _LATTICE[: N_NODES[cell]]]
+        # Nodes of the kind on the 3 x 3 points of a cell, row by row.
+        r, s = np.array(KINDS[cell].natural, dtype=np.int64).T + 1
+        cells = nodes9[:, 3 * s + r]
         edges = [
             np.stack([cells_of, np.full(len(cells_of), side)], axis=1)
             for side, cells_of in enumerate(sides)

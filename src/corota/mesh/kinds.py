@@ -24,16 +24,16 @@ class Kind:
     count : int
         Number of nodes.
     vtk, gmsh : int
-        Numbers of the type.
+        Numbers of the type; 0 for none.
     frd : tuple of int
         Number of the type in ``.frd`` files and how many of the nodes it has; empty for none.
     meshio : str
-        Name of the type in meshio.
+        Name of the type in meshio; empty for none.
     edges : tuple of tuple of int
         Local nodes of the edges: first, last and, on quadratic ones, middle. Empty for lines and
         points.
     reversal : tuple of int
-        Order in which the nodes of a clockwise cell are counter-clockwise; the first stays.
+        Order in which the nodes of a clockwise cell are counter-clockwise.
     pieces : tuple of tuple of int
         Triangles and quadrilaterals with straight sides that the cell consists of.
     unv : tuple of int

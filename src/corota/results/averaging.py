@@ -29,11 +29,7 @@ AVERAGING = (
 )
 
 
-#: Kinds by number of nodes; planar cells before lines.
-_OF_COUNT = {kind.count: kind for kind in sorted(KINDS.values(), key=lambda kind: kind.dimension)}
-
-
-def extrapolation(shape: Floats) -> Floats:
+def extrapolation(name: str, shape: Floats) -> Floats:
     """Matrix from values at the points of a cell to values at its nodes, shape (k, p).
 
     A least-squares fit: constant with one or two points, otherwise linear in triangles and
@@ -41,11 +37,12 @@ def extrapolation(shape: Floats) -> Floats:
 
     Parameters
     ----------
+    name : str
+        Kind of the cell.
     shape : ndarray, shape (p, k)
         Shape functions at the points.
     """
-    points, nodes = shape.shape
-    kind = _OF_COUNT[nodes]
+    points, kind = len(shape), KINDS[name]
     corners = np.array(kind.natural or [(0.0, 0.0)], dtype=np.float64)
     at = shape @ corners
     terms = 1 if points < 3 else 3 if kind.n_corners == 3 or points == 3 else 4
@@ -126,6 +123,7 @@ class Averaging:
         self.mesh, self.sections = mesh, sections
         self._cells: list[Ints] = []
         self._nodes: list[Ints] = []
+        self._kinds: list[str] = []
         self._groups: tuple[Ints, Ints, list[Ints]] | None = None
 
     def _locate(self, fields: list[PointFields]) -> None:
@@ -135,11 +133,12 @@ class Averaging:
             a is b or np.array_equal(a, b) for a, b in zip(cells, self._cells, strict=True)
         ):
             return
-        self._cells, self._nodes, self._groups = cells, [], None
+        self._cells, self._nodes, self._kinds, self._groups = cells, [], [], None
         for own in cells:
             block, _ = self.mesh.locate(int(own[0]))
             offset = int(self.mesh.offsets[block])
             self._nodes.append(self.mesh.cells[block].nodes[own - offset])
+            self._kinds.append(self.mesh.cells[block].kind)
 
     def _average(
         self, fields: list[PointFields], names: list[str], places: list[Ints], n: int
@@ -150,9 +149,10 @@ class Averaging:
         for name in names:
             width = {b.values[name].shape[2:] for b in fields if name in b.values} or {()}
             sums[name] = np.zeros((n, *width.pop()))
-        for block, flat in zip((b for b in fields if len(b.cells)), places, strict=True):
+        filled = (b for b in fields if len(b.cells))
+        for block, kind, flat in zip(filled, self._kinds, places, strict=True):
             count += np.bincount(flat, minlength=n)
-            matrix = extrapolation(block.shape)
+            matrix = extrapolation(kind, block.shape)
             # einsum, not @: threads of a BLAS would compete with the solver for a small product.
             for name in names:
                 if name not in block.values:
