@@ -81,7 +81,7 @@ def test_bad_curves_and_laws():
         ct.RigidCurve.polyline([(0, 0), (1, 0), (1, 1)], fillet=0.9)
     with pytest.raises(ct.InputError, match="must increase strictly"):
         ct.PressureLaw("tabular", [0.0, 2.0, 1.0], [0.0, 0.1, 0.2])
-    with pytest.raises(ct.InputError, match="no pressure law 'soft'"):
+    with pytest.raises(ct.InputError, match="no pressure law 'soft'; there are linear"):
         ct.PressureLaw("soft", 1.0)
 
 

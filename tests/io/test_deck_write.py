@@ -176,6 +176,12 @@ def test_what_a_deck_cannot_hold_is_refused(tmp_path: Path) -> None:
         write(model, tmp_path / "model.inp")
 
 
+def _without_card(model: ct.Model) -> None:
+    law = ct.PressureLaw("linear", 1.0)
+    model.contact("left", "right", law=law)
+    law.kind = "power"
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -186,6 +192,7 @@ def test_what_a_deck_cannot_hold_is_refused(tmp_path: Path) -> None:
         ),
         (lambda m: m.local_axes([1], angle=0.5, center=(0.0, 1.0)), "local axes about a point"),
         (lambda m: m.contact("left", "right", reach=0.5), "reach"),
+        (_without_card, "no card of a deck holds a power pressure law"),
         (
             lambda m: m.steps.append(ct.Static(path=ct.DisplacementControl("right", "y", 1.0))),
             "step 1: path=DisplacementControl",

@@ -199,15 +199,16 @@ class PressureLaw(Brief):
 
     Parameters
     ----------
-    kind : {"linear", "exponential", "tabular"}
-        ``linear``: ``pressure[0]`` is the stiffness [force/length^3]; ``exponential``: the
-        pressure begins at the clearance ``overclosure[0]`` = c and is ``pressure[0]`` = p0 at
-        zero, p = p0 / (e - 1) (w/c + 1) (exp(w/c + 1) - 1) at the overclosure w; ``tabular``:
-        straight between points, beyond the last one with the last slope.
+    kind : str
+        Law of the core. ``linear``: ``pressure[0]`` is the stiffness [force/length^3];
+        ``exponential``: the pressure begins at the clearance ``overclosure[0]`` = c and is
+        ``pressure[0]`` = p0 at zero, p = p0 / (e - 1) (w/c + 1) (exp(w/c + 1) - 1) at the
+        overclosure w; ``tabular``: straight between points, beyond the last one with the last
+        slope.
     pressure, overclosure : ndarray, shape (n,)
     """
 
-    kind: Literal["linear", "exponential", "tabular"]
+    kind: str
     pressure: Floats
     overclosure: Floats = field(default_factory=lambda: np.zeros(1))
     where: Location | None = field(default=None, compare=False, repr=False)
@@ -215,10 +216,10 @@ class PressureLaw(Brief):
     def __post_init__(self) -> None:
         p = self.pressure = np.atleast_1d(np.asarray(self.pressure, np.float64))
         w = self.overclosure = np.atleast_1d(np.asarray(self.overclosure, np.float64))
-        if self.kind not in ("linear", "exponential", "tabular"):
+        known = [name for name in _core.contact_laws()[0] if name != "hard"]
+        if self.kind not in known:
             raise InputError(
-                f"no pressure law {self.kind!r}; there are linear, exponential, tabular",
-                self.where,
+                f"no pressure law {self.kind!r}; there are {', '.join(known)}", self.where
             )
         if not (np.isfinite(p).all() and np.isfinite(w).all()):
             raise InputError("the numbers of a pressure law must be finite", self.where)
@@ -235,6 +236,10 @@ class PressureLaw(Brief):
                 )
         elif not (p[0] > 0.0 and (self.kind == "linear" or w[0] > 0.0)):
             raise InputError("the numbers of a pressure law must be > 0", self.where)
+        try:
+            _core.ContactLaw(*self.constants)
+        except ValueError as error:
+            raise InputError(f"{self.kind} pressure law: {error}", self.where) from None
 
     @property
     def constants(self) -> tuple[str, list[float], list[float]]:

@@ -140,9 +140,10 @@ class _Builder:
             card.error(text, hint=hint)
         if draft.law in ("HARD", "TIED") or not draft.pressure:
             return None
-        kind = cast("Literal['linear', 'tabular', 'exponential']", draft.law.lower())
         try:
-            return PressureLaw(kind, np.array(draft.pressure), np.array(draft.overclosure))
+            return PressureLaw(
+                draft.law.lower(), np.array(draft.pressure), np.array(draft.overclosure)
+            )
         except InputError as error:
             self.deck.error(draft.card, draft.law_where, error.message)
             draft.pressure.clear()  # said once

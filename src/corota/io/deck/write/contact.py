@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import UnsupportedError
+from corota.io.deck.cards.contact import LAWS
 from corota.mesh.parts import cells_of
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, edges_or_nodes, is_gap
 from corota.model.friction import DecayingFriction, Friction, FrictionTable
@@ -142,6 +143,8 @@ def _check_heights(model: Model, pair: ContactPair) -> None:
 
 
 def _behavior(law: PressureLaw) -> str:
+    if law.kind.upper() not in LAWS:
+        raise UnsupportedError(f"no card of a deck holds a {law.kind} pressure law")
     rows = f"{float(law.pressure[0])!r}\n"
     if law.kind == "exponential":
         rows = f"{float(law.overclosure[0])!r}, {rows}"
