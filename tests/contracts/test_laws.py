@@ -164,7 +164,7 @@ def test_every_public_law_is_here() -> None:
     public = {
         name
         for name, home in ct._HOMES.items()
-        if home.startswith("model.") and issubclass(type(found := getattr(ct, name)), type)
+        if home.startswith("corota.model.") and issubclass(type(found := getattr(ct, name)), type)
         if issubclass(found, Material)
     }
     assert public - names == {"CompiledMaterial", "MaterialTable", "Umat", "UserMaterial"}
