@@ -4,9 +4,12 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
+import subprocess
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 from house_facts import ROOT, circles, imports, lines_with, size, sources
@@ -46,6 +49,17 @@ def evaluations(tree: Path) -> int:
     return found
 
 
+@cache
+def walk(tree: Path) -> list[int]:
+    """Files of contact that a card passes to the first correction, and returns to them."""
+    paths = os.pathsep.join((str(tree / "src"), str(tree)))
+    command = [sys.executable, str(ROOT / "scripts/contact_walk.py")]
+    run = subprocess.run(
+        command, env={**os.environ, "PYTHONPATH": paths}, capture_output=True, text=True, check=True
+    )
+    return [int(number) for number in re.findall(r"\d+", run.stdout)]
+
+
 MEASURES: dict[str, Callable[[Path], int]] = {
     "files of contact": lambda t: sum(p.startswith(CONTACT) for p, _ in sources(t)),
     "lines of contact": lambda t: size(t, CONTACT),
@@ -68,6 +82,8 @@ MEASURES: dict[str, Callable[[Path], int]] = {
         for line in text.splitlines()
         if path == "analysis/evaluation.py"
     ),
+    "files that a contact card passes to the first correction": lambda t: walk(t)[0],
+    "returns to them on that way": lambda t: walk(t)[1],
     "modules in import circles": lambda t: sum(len(g) for g in circles(imports(t))),
 }
 

@@ -21,7 +21,7 @@ CODE = {word for text in re.findall(r"`([^`]*)`", PAGE) for word in re.split(r"[
 
 @pytest.mark.parametrize("keyword", [*KEYWORDS, *IGNORED])
 def test_every_keyword_is_on_the_page(keyword: str) -> None:
-    assert keyword in NAMED
+    assert keyword in NAMED, f"docs/keywords.md has no row of {keyword}"
 
 
 def test_the_page_names_no_keyword_that_the_reader_does_not_know() -> None:
@@ -34,7 +34,8 @@ def test_no_keyword_is_in_two_tables() -> None:
 
 
 def test_elements_and_variables_are_on_the_page() -> None:
-    assert set(LINES) | set(OWN) <= CODE
+    missing = (set(LINES) | set(OWN)) - CODE
+    assert not missing, f"docs/keywords.md (Elements) does not name the types {missing}"
     for name in ELEMENTS:
         assert name in CODE or name[3:] in ALIASES
     for names in WRITTEN.values():
