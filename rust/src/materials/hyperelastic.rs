@@ -161,6 +161,15 @@ pub struct Hyperelastic<W> {
     contraction: f64,
 }
 
+/// The energy that a hyperelastic law consists of.
+pub trait OfEnergy {
+    type Energy: Energy;
+}
+
+impl<W: Energy> OfEnergy for Hyperelastic<W> {
+    type Energy = W;
+}
+
 /// In-plane strain by mean, half difference and half shear.
 #[inline(always)]
 fn parts<T: Real>(e: &[T; 3]) -> [T; 3] {

@@ -28,25 +28,40 @@ pub use clock::Clock;
 pub use law::Law;
 pub use material::{Material, Plane, PointState, Response, SolidResponse, State, TensorOutput};
 
-/// The one list of materials: call `$then![file::Type, ...]`.
-macro_rules! laws {
-    ($then:ident) => {
+/// The list of hyperelastic laws, each by its energy, between others: `Mullins` softens and
+/// `Viscoelastic` relaxes all of them.
+macro_rules! hyperelastic_laws {
+    ($then:ident, [$($before:tt)*], [$($after:tt)*]) => {
         $then![
-            elastic::Elastic,
-            orthotropic::Orthotropic,
-            mises::Mises,
-            hill::Hill,
-            viscoplastic::Viscoplastic,
-            viscoelastic::Viscoelastic,
-            ramberg_osgood::RambergOsgood,
+            $($before)*
             polynomial::Polynomial,
             ogden::Ogden,
             arruda_boyce::ArrudaBoyce,
             hyperfoam::Hyperfoam,
-            mullins::Mullins,
-            tabulated::Tabulated,
-            c_function::CFunction,
-            umat::Umat,
+            $($after)*
+        ];
+    };
+}
+use hyperelastic_laws;
+
+/// The one list of materials: call `$then![file::Type, ...]`. Elastic is the first.
+macro_rules! laws {
+    ($then:ident) => {
+        $crate::materials::hyperelastic_laws![
+            $then,
+            [elastic::Elastic,],
+            [
+                orthotropic::Orthotropic,
+                mises::Mises,
+                hill::Hill,
+                viscoplastic::Viscoplastic,
+                viscoelastic::Viscoelastic,
+                ramberg_osgood::RambergOsgood,
+                mullins::Mullins,
+                tabulated::Tabulated,
+                c_function::CFunction,
+                umat::Umat,
+            ]
         ];
     };
 }

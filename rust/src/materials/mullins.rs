@@ -7,28 +7,42 @@
 //! Parameters: number of the parent in [`PARENTS`], r, m, beta, then the parameters of the parent.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::arruda_boyce::ChainEnergy;
-use super::hyperelastic::{Energy, Hyperelastic, Stretches};
-use super::hyperfoam::FoamEnergy;
-use super::ogden::OgdenEnergy;
-use super::polynomial::PolynomialEnergy;
+use super::hyperelastic::{Energy, Hyperelastic, OfEnergy, Stretches};
+use super::material::Material;
 use crate::base::Real;
 use crate::base::jet::Jet;
 use std::f64::consts::FRAC_2_SQRT_PI;
 
 pub type Mullins = Hyperelastic<SofteningEnergy>;
 
-/// Laws that can soften, by their numbers.
-pub const PARENTS: [&str; 4] =
-    [PolynomialEnergy::NAME, OgdenEnergy::NAME, ChainEnergy::NAME, FoamEnergy::NAME];
+macro_rules! parents {
+    ($($file:ident::$name:ident),+ $(,)?) => {
+        /// Laws that can soften, by their numbers.
+        const PARENTS: &[&str] = &[$(super::$file::$name::NAME),+];
 
-#[derive(Clone, Debug)]
-enum Parent {
-    Polynomial(PolynomialEnergy),
-    Ogden(OgdenEnergy),
-    ArrudaBoyce(ChainEnergy),
-    Hyperfoam(FoamEnergy),
+        /// Energy of a law that softens.
+        #[derive(Clone, Debug)]
+        enum Parent { $($name(<super::$file::$name as OfEnergy>::Energy)),+ }
+
+        impl Parent {
+            fn new(kind: f64, numbers: &[f64]) -> Result<Self, String> {
+                let law = PARENTS.get(kind as usize);
+                $(if law == Some(&super::$file::$name::NAME) {
+                    return Energy::new(numbers).map(Self::$name);
+                })+
+                Err(format!("parents are {PARENTS:?} by their numbers, not {kind}"))
+            }
+        }
+
+        /// Call a method of the energy of a parent.
+        macro_rules! of {
+            ($parent:expr, $energy:ident => $call:expr) => {
+                match $parent { $(Parent::$name($energy) => $call),+ }
+            };
+        }
+    };
 }
+super::hyperelastic_laws!(parents, [], []);
 
 #[derive(Clone, Debug)]
 pub struct SofteningEnergy {
@@ -36,18 +50,6 @@ pub struct SofteningEnergy {
     r: f64,
     m: f64,
     beta: f64,
-}
-
-/// Call a method of the energy of a parent.
-macro_rules! of {
-    ($parent:expr, $energy:ident => $call:expr) => {
-        match $parent {
-            Parent::Polynomial($energy) => $call,
-            Parent::Ogden($energy) => $call,
-            Parent::ArrudaBoyce($energy) => $call,
-            Parent::Hyperfoam($energy) => $call,
-        }
-    };
 }
 
 /// The error function of a number >= 0, to round-off, by that of `exp(-x^2)` as well.
@@ -123,13 +125,7 @@ impl Energy for SofteningEnergy {
         if !(r > 1.0 && m >= 0.0 && beta >= 0.0 && m + beta > 0.0) {
             return Err("the softening needs r > 1, m >= 0 and beta >= 0, one of them > 0".into());
         }
-        let parent = match kind as usize {
-            0 => Parent::Polynomial(PolynomialEnergy::new(rest)?),
-            1 => Parent::Ogden(OgdenEnergy::new(rest)?),
-            2 => Parent::ArrudaBoyce(ChainEnergy::new(rest)?),
-            3 => Parent::Hyperfoam(FoamEnergy::new(rest)?),
-            _ => return Err(format!("parents are {PARENTS:?} by their numbers, not {kind}")),
-        };
+        let parent = Parent::new(kind, rest)?;
         Ok(Self { parent, r, m, beta })
     }
     fn is_incompressible(&self) -> bool {

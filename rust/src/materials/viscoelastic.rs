@@ -13,19 +13,11 @@
 //! exact tangent is not symmetric; its symmetric part is returned.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::arruda_boyce::ArrudaBoyce;
-use super::elastic::Elastic;
-use super::hyperfoam::Hyperfoam;
 use super::law::{update, update_solid};
 use super::material::{Material, Plane, PointState, Response, SolidResponse};
-use super::ogden::Ogden;
-use super::polynomial::Polynomial;
 use crate::base::Real;
 use crate::base::small::Mat;
 
-/// Laws that can relax, by their numbers.
-pub const PARENTS: [&str; 5] =
-    [Elastic::NAME, Polynomial::NAME, Ogden::NAME, ArrudaBoyce::NAME, Hyperfoam::NAME];
 /// Members of the state: work of the stress, strain and stress (xx, yy, xy, zz), stress of the
 /// parent, then that of each term.
 const WORK: usize = 0;
@@ -41,40 +33,34 @@ const TOLERANCE: f64 = 1e-9;
 /// Ratio of times below which a relaxation is summed as a series.
 const SMALL: f64 = 1e-2;
 
-#[derive(Clone, Debug)]
-enum Parent {
-    Elastic(Elastic),
-    Polynomial(Polynomial),
-    Ogden(Ogden),
-    ArrudaBoyce(ArrudaBoyce),
-    Hyperfoam(Hyperfoam),
-}
+macro_rules! parents {
+    ($($file:ident::$name:ident),+ $(,)?) => {
+        /// Laws that can relax, by their numbers.
+        const PARENTS: &[&str] = &[$(super::$file::$name::NAME),+];
 
-/// Call a method of the law of a parent.
-macro_rules! of {
-    ($parent:expr, $law:ident => $call:expr) => {
-        match $parent {
-            Parent::Elastic($law) => $call,
-            Parent::Polynomial($law) => $call,
-            Parent::Ogden($law) => $call,
-            Parent::ArrudaBoyce($law) => $call,
-            Parent::Hyperfoam($law) => $call,
+        /// A law that relaxes.
+        #[derive(Clone, Debug)]
+        enum Parent { $($name(super::$file::$name)),+ }
+
+        impl Parent {
+            fn new(kind: usize, numbers: &[f64], plane: Plane) -> Result<Self, String> {
+                let law = PARENTS.get(kind);
+                $(if law == Some(&super::$file::$name::NAME) {
+                    return super::$file::$name::new(numbers, plane).map(Self::$name);
+                })+
+                Err(format!("parents are {PARENTS:?} by their numbers, not {kind}"))
+            }
+        }
+
+        /// Call a method of the law of a parent.
+        macro_rules! of {
+            ($parent:expr, $law:ident => $call:expr) => {
+                match $parent { $(Parent::$name($law) => $call),+ }
+            };
         }
     };
 }
-
-impl Parent {
-    fn new(kind: usize, numbers: &[f64], plane: Plane) -> Result<Self, String> {
-        match kind {
-            0 => Elastic::new(numbers, plane).map(Self::Elastic),
-            1 => Polynomial::new(numbers, plane).map(Self::Polynomial),
-            2 => Ogden::new(numbers, plane).map(Self::Ogden),
-            3 => ArrudaBoyce::new(numbers, plane).map(Self::ArrudaBoyce),
-            4 => Hyperfoam::new(numbers, plane).map(Self::Hyperfoam),
-            _ => Err(format!("parents are {PARENTS:?} by their numbers, not {kind}")),
-        }
-    }
-}
+super::hyperelastic_laws!(parents, [elastic::Elastic,], []);
 
 #[derive(Clone, Copy, Debug)]
 struct Term {

@@ -165,6 +165,18 @@ class Hyperelastic(SinglePoint, ABC):
         return ax
 
 
+def laws_of_energies(kind: type[Hyperelastic] = Hyperelastic) -> list[str]:
+    """Names of the laws that are an energy without memory, in the order of the core.
+
+    ``Mullins`` and ``Viscoelastic`` give the core the place of their parent among them.
+    """
+    from corota import _core
+
+    own = {kind.law} if hasattr(kind, "law") and not kind.remembers else set()
+    own = own.union(*map(laws_of_energies, kind.__subclasses__()))
+    return [name for name in _core.materials() if name in own]
+
+
 def _rows(tests: dict[str, ArrayLike | None]) -> dict[str, Floats]:
     """Measured rows (stress, strain) by test, those at rest left out."""
     found = {}

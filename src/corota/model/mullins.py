@@ -9,13 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError, number
-from corota.model.hyperelastic import Hyperelastic
+from corota.model.hyperelastic import Hyperelastic, laws_of_energies
 
 if TYPE_CHECKING:
     from typing_extensions import Self
-
-#: Numbers of the parents' laws in the core.
-PARENTS = ("polynomial", "ogden", "arruda_boyce", "hyperfoam")
 
 
 @dataclass
@@ -92,5 +89,5 @@ class Mullins(Hyperelastic):
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
         """Number of the parent, r, m, beta, parameters of the parent."""
-        own = (float(PARENTS.index(self.parent.law)), float(self.r), float(self.m))
+        own = (float(laws_of_energies().index(self.parent.law)), float(self.r), float(self.m))
         return [*own, float(self.beta), *self.parent.parameters()]

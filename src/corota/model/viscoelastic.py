@@ -10,6 +10,7 @@ import numpy as np
 
 from corota.display import Brief
 from corota.errors import InputError, number
+from corota.model.hyperelastic import laws_of_energies
 from corota.model.materials import Elastic, Material, isotropic_compliance
 from corota.model.single_point import SinglePoint
 from corota.names import choose_attribute
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
     from corota.arrays import Complex, Floats
 
 
-#: Numbers of the parents' laws in the core.
-PARENTS = ("elastic", "polynomial", "ogden", "arruda_boyce", "hyperfoam")
 #: What the constants of a parent are.
 MODULI = ("instantaneous", "long term")
 
@@ -115,7 +114,7 @@ class Viscoelastic(SinglePoint):
 
     def __post_init__(self) -> None:
         choose_attribute(self, "moduli", MODULI, "moduli", self.where)
-        if not isinstance(self.parent, Elastic) and self.parent.law not in PARENTS:
+        if not isinstance(self.parent, Elastic) and self.parent.law not in laws_of_energies():
             raise InputError(
                 f"Elastic and hyperelastic materials relax, {type(self.parent).__name__} does not",
                 self.where,
@@ -229,7 +228,7 @@ class Viscoelastic(SinglePoint):
         if self.shift is not None:
             at = self.shift.T0 if self.temperature is None else self.temperature
             shift = [self.shift.C1, self.shift.C2, self.shift.T0, at]
-        numbers = [float(PARENTS.index(self.parent.law))]
+        numbers = [float(["elastic", *laws_of_energies()].index(self.parent.law))]
         for own in (self._parent_numbers(), [v for row in self.terms for v in row], shift):
             numbers += [float(len(own)), *(float(v) for v in own)]
         return numbers

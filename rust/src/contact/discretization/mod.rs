@@ -4,6 +4,8 @@
 pub mod line;
 pub mod mortar;
 pub mod node_to_segment;
+#[cfg(test)]
+pub mod nodes_only;
 pub mod point_tie;
 pub mod tie;
 
@@ -14,7 +16,13 @@ use super::terms::{Terms, WIDTH, distinct, join};
 use super::travel::{Start, Station};
 
 /// All discretizations.
-pub const DISCRETIZATIONS: &[Entry] = &[mortar::ENTRY, node_to_segment::ENTRY, tie::ENTRY];
+pub const DISCRETIZATIONS: &[Entry] = &[
+    mortar::ENTRY,
+    node_to_segment::ENTRY,
+    tie::ENTRY,
+    #[cfg(test)]
+    nodes_only::ENTRY,
+];
 
 /// Those of pairs with a line or single nodes, which take no other.
 pub const OF_LINES: &[Entry] = &[line::ENTRY, point_tie::ENTRY];
