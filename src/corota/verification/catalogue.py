@@ -73,6 +73,11 @@ class Value:
         return self.error <= self.tolerance
 
 
+def zero(quantity: str, measured: float, tolerance: float) -> Value:
+    """A number that should be zero, such as an error, with the largest size that it may have."""
+    return Value(quantity, 0.0, measured, tolerance, "absolute")
+
+
 @dataclass(frozen=True)
 class Study:
     """Errors over refinement, for a convergence plot.

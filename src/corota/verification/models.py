@@ -13,6 +13,7 @@ from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.run import solve
 from corota.mesh import Cells, Mesh
+from corota.mesh.shape_functions import edge_functions
 from corota.model import elements
 from corota.model.loads import Fixed, NodalForce
 from corota.model.materials import Elastic
@@ -119,13 +120,9 @@ def edge_forces(
     for ends in mesh.edge_nodes(mesh.edge_sets[name]):
         x = mesh.points[list(ends)]
         for r, w in zip(*np.polynomial.legendre.leggauss(4), strict=True):
-            if len(ends) == 2:
-                n, d = [(1 - r) / 2, (1 + r) / 2], [-0.5, 0.5]
-            else:
-                n = [r * (r - 1) / 2, r * (r + 1) / 2, 1 - r * r]
-                d = [r - 0.5, r + 0.5, -2 * r]
-            dl = w * thickness * np.hypot(*(np.array(d) @ x))
-            t = np.asarray(traction(np.array(n) @ x), float)
+            n, d = (f[: len(ends)] for f in edge_functions(np.asarray(r), len(ends) == 3))
+            dl = w * thickness * np.hypot(*(d @ x))
+            t = np.asarray(traction(n @ x), float)
             for a, share in zip(ends, n, strict=True):
                 force[int(a)] = force.get(int(a), np.zeros(2)) + share * dl * t
     return [

@@ -18,7 +18,7 @@ import numpy as np
 import corota as ct
 from corota.model import elements
 from corota.verification.beam_models import polyline
-from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Study, Value, zero
 from corota.verification.models import nearest, run
 
 LENGTH, WIDTH, DEPTH, YOUNG, DENSITY, FORCE = 10.0, 0.3, 0.1, 200e9, 700.0, 100.0
@@ -85,9 +85,7 @@ def measure() -> Iterator[Value]:
             time, found = moved(element, way, speed)
             known = exact(time, speed)
             worst = float(np.abs(found - known).max() / np.abs(known).max())
-            yield Value(
-                f"largest error at {speed:g} 1/s, {element}, {way}", 0.0, worst, 5e-3, "absolute"
-            )
+            yield zero(f"largest error at {speed:g} 1/s, {element}, {way}", worst, 5e-3)
             k = int(np.abs(known).argmax())
             yield Value(
                 f"largest displacement [m], {speed:g} 1/s, {element}, {way}",

@@ -17,7 +17,7 @@ import numpy as np
 
 import corota as ct
 from corota.verification.beam_models import polyline
-from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Study, Value, zero
 from corota.verification.models import run
 from corota.verification.motion_models import (
     DENSITY,
@@ -73,13 +73,7 @@ def measure() -> Iterator[Value]:
             0.005,
         )
         distance = float(np.hypot(*(found - known).T).max()) / LENGTH
-        yield Value(
-            f"largest distance of the paths / length, {element} 32 x 2",
-            0.0,
-            distance,
-            tolerance,
-            "absolute",
-        )
+        yield zero(f"largest distance of the paths / length, {element} 32 x 2", distance, tolerance)
 
 
 def picture() -> Picture:

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 import numpy as np
 
 import corota as ct
-from corota.verification.catalogue import Picture, Problem, Value
+from corota.verification.catalogue import Picture, Problem, Value, zero
 from corota.verification.models import DRILLING, ELEMENTS, boundary, cell, prescribe, run
 
 POINTS = np.array(
@@ -81,21 +81,11 @@ def stress_error(results: ct.Results) -> float:
 def measure() -> Iterator[Value]:
     """Stress of both patches."""
     for element in ELEMENTS:
-        yield Value(
-            f"stress error, moved boundary, {element}",
-            0.0,
-            stress_error(moved(element)),
-            1e-11,
-            "absolute",
-        )
+        yield zero(f"stress error, moved boundary, {element}", stress_error(moved(element)), 1e-11)
     for element in ELEMENTS:
         if element != "Q8R":
-            yield Value(
-                f"stress error, edge tractions, {element}",
-                0.0,
-                stress_error(pulled(element)),
-                1e-9,
-                "absolute",
+            yield zero(
+                f"stress error, edge tractions, {element}", stress_error(pulled(element)), 1e-9
             )
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import corota as ct
-from corota.verification.catalogue import Picture, Problem, Value
+from corota.verification.catalogue import Picture, Problem, Value, zero
 from corota.verification.models import DRILLING, ELEMENTS, boundary, cell, prescribe, run
 
 YOUNG, POISSON, SEEDS = 210.0, 0.3, 20
@@ -64,10 +64,8 @@ def measure() -> Iterator[Value]:
     for element in ELEMENTS:
         for plane in ("stress", "strain"):
             worst = np.max([errors(element, plane, seed) for seed in range(SEEDS)], axis=0)
-            yield Value(
-                f"displacement error, {element}, plane {plane}", 0.0, worst[0], 1e-12, "absolute"
-            )
-            yield Value(f"stress error, {element}, plane {plane}", 0.0, worst[1], 1e-11, "absolute")
+            yield zero(f"displacement error, {element}, plane {plane}", worst[0], 1e-12)
+            yield zero(f"stress error, {element}, plane {plane}", worst[1], 1e-11)
 
 
 PROBLEM = Problem(

@@ -19,7 +19,7 @@ import numpy as np
 import corota as ct
 from corota.model import elements
 from corota.verification.beam_models import polyline
-from corota.verification.catalogue import Curve, Picture, Problem, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Value, zero
 from corota.verification.models import cell, run
 
 PUSH, END, CELLS = 2.5, 4.0, 12
@@ -82,28 +82,16 @@ def measure() -> Iterator[Value]:
         frames = [f for f in results.frames if f.increment > 0]
         late = [f.scalars for f in frames if f.step == 2]
         yield Value(f"momentum at the end, {element}", 20.0, late[-1]["momentum x"], 1e-9)
-        yield Value(f"momentum across, {element}", 0.0, late[-1]["momentum y"], 1e-8, "absolute")
+        yield zero(f"momentum across, {element}", late[-1]["momentum y"], 1e-8)
         size = max(s["kinetic energy"] for s in late)
         for name in ("angular momentum", "energy balance"):
             change = float(np.ptp([s[name] for s in late])) / size
-            yield Value(f"drift of the {name} in flight, {element}", 0.0, change, 1e-9, "absolute")
+            yield zero(f"drift of the {name} in flight, {element}", change, 1e-9)
         if element == "Q4I":
             time, x, y = center(results).T
             exact = np.where(time < PUSH, 3.0 + 0.4 * time**2, 5.5 + 2.0 * (time - PUSH))
-            yield Value(
-                f"error of the center's path x, {element}",
-                0.0,
-                np.abs(x - exact).max(),
-                1e-8,
-                "absolute",
-            )
-            yield Value(
-                f"error of the center's path y, {element}",
-                0.0,
-                np.abs(y - 4.0).max(),
-                1e-8,
-                "absolute",
-            )
+            yield zero(f"error of the center's path x, {element}", np.abs(x - exact).max(), 1e-8)
+            yield zero(f"error of the center's path y, {element}", np.abs(y - 4.0).max(), 1e-8)
         bent = float(np.ptp([s["internal work"] for s in late])) / size
         yield Value(f"strain energy that comes and goes, {element}", 1e-3, bent, 0.0, "at least")
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import corota as ct
-from corota.verification.catalogue import Curve, Picture, Problem, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Value, zero
 from corota.verification.models import ELEMENTS, cell, nearest, run
 
 YOUNG, NU, ALPHA = 1000.0, 0.3, 1e-3
@@ -66,16 +66,10 @@ def measure() -> Iterator[Value]:
     for element in ELEMENTS:
         frame = plate(element, "stress", held=False).frames[-1]
         stress = float(np.abs(frame.fields[0].values["S"]).max()) / (YOUNG * ALPHA)
-        yield Value(
-            f"stress of the free plate / (E alpha T), {element}", 0.0, stress, 1e-10, "absolute"
-        )
+        yield zero(f"stress of the free plate / (E alpha T), {element}", stress, 1e-10)
         u = frame.U - ALPHA * plate(element, "stress", held=False).mesh.points
-        yield Value(
-            f"error of its expansion / (alpha T), {element}",
-            0.0,
-            float(np.abs(u).max()) / ALPHA,
-            1e-10,
-            "absolute",
+        yield zero(
+            f"error of its expansion / (alpha T), {element}", float(np.abs(u).max()) / ALPHA, 1e-10
         )
         for plane, exact in (("stress", -1.0), ("strain", -1.0 / (1.0 - NU))):
             values = plate(element, plane, held=True).frames[-1].fields[0].values["S"][..., 0]

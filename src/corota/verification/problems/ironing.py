@@ -16,7 +16,7 @@ from functools import cache
 import numpy as np
 
 import corota as ct
-from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Study, Value, zero
 from corota.verification.contact_models import ACROSS, ironing, steps
 from corota.verification.models import run
 
@@ -58,7 +58,7 @@ def measure() -> Iterator[Value]:
             yield Value(f"force across / down at most, {text}", friction, ratio, 0.0, "at most")
             yield Value(f"force across / down, {text}", 0.9 * friction, ratio, 0.0, "at least")
         else:
-            yield Value(f"force across / down, {text}", 0.0, ratio, 2e-3, "absolute")
+            yield zero(f"force across / down, {text}", ratio, 2e-3)
         balance, law = 0.0, 0.0
         for frame in results.frames[1:]:
             total = sum(
@@ -69,15 +69,11 @@ def measure() -> Iterator[Value]:
             slips = frame.C[:, 4] == 2.0
             differ = np.abs(frame.C[slips, 1]) - friction * frame.C[slips, 0]
             law = max(law, float(np.abs(differ).max(initial=0.0)))
-        yield Value(
-            f"resultant of all supports / force down, {text}",
-            0.0,
-            balance / float(down.max()),
-            1e-7,
-            "absolute",
+        yield zero(
+            f"resultant of all supports / force down, {text}", balance / float(down.max()), 1e-7
         )
         if friction:
-            yield Value(f"shear less friction times pressure, {text}", 0.0, law, 1e-9, "absolute")
+            yield zero(f"shear less friction times pressure, {text}", law, 1e-9)
         yield Value(f"work over strain energy and friction, {text}", 1.0, work(results), 0.03)
 
 

@@ -17,7 +17,7 @@ import numpy as np
 import corota as ct
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
-from corota.verification.catalogue import Problem, Value
+from corota.verification.catalogue import Problem, Value, zero
 from corota.verification.models import DRILLING, ELEMENTS, assemble, cell
 
 STRAINS = ("linear", "green_lagrange", "logarithmic")
@@ -80,21 +80,11 @@ def rigid(element: str) -> float:
 def measure() -> Iterator[Value]:
     """Every element; the turned strain for every local strain."""
     for element in ELEMENTS:
-        yield Value(
-            f"force under rigid motion, 0 to 720 degrees, {element}",
-            0.0,
-            rigid(element),
-            1e-11,
-            "absolute",
-        )
+        yield zero(f"force under rigid motion, 0 to 720 degrees, {element}", rigid(element), 1e-11)
         for strain in STRAINS:
             force, tangent = errors(element, strain)
-            yield Value(
-                f"error of turned forces, {element}, {strain}", 0.0, force, 1e-11, "absolute"
-            )
-            yield Value(
-                f"error of turned stiffness, {element}, {strain}", 0.0, tangent, 1e-11, "absolute"
-            )
+            yield zero(f"error of turned forces, {element}, {strain}", force, 1e-11)
+            yield zero(f"error of turned stiffness, {element}, {strain}", tangent, 1e-11)
 
 
 PROBLEM = Problem(

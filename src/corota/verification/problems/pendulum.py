@@ -17,7 +17,7 @@ from scipy.special import ellipk
 
 import corota as ct
 from corota.verification.beam_models import polyline
-from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Study, Value, zero
 from corota.verification.models import cell, run
 from corota.verification.motion_models import column
 
@@ -94,7 +94,7 @@ def measure() -> Iterator[Value]:
         yield Value(f"period, {element}", PERIOD, period(results), 2e-3)
         kinetic = float(column(results, "kinetic energy").max())
         drift = float(np.ptp(column(results, "energy balance"))) / kinetic
-        yield Value(f"drift of the energy, {element}", 0.0, drift, 1e-8, "absolute")
+        yield zero(f"drift of the energy, {element}", drift, 1e-8)
     yield Value("period, point mass on a bar", MASS_PERIOD, on_a_bar(), 1e-3)
 
 

@@ -16,7 +16,7 @@ from functools import cache
 import numpy as np
 
 import corota as ct
-from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Study, Value, zero
 from corota.verification.models import run
 from corota.verification.plastic_models import find, perforated_strip
 
@@ -62,12 +62,10 @@ def measure() -> Iterator[Value]:
             found[-1] / LIMIT,
             tolerance,
         )
-        yield Value(
+        yield zero(
             f"growth over the last tenth of the pull, {element}",
-            0.0,
             found[-1] / np.interp(0.9, factors(limit(element, n)), found) - 1.0,
             2e-3,
-            "absolute",
         )
     for element, n, peer in HARDENING:
         yield Value(

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import corota as ct
-from corota.verification.catalogue import Curve, Picture, Problem, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Value, zero
 from corota.verification.models import DRILLING, cell, last_frames, run
 
 RATIOS = (1.5, 2.0, 3.0, 5.0, 10.0)
@@ -87,7 +87,7 @@ def measure() -> Iterator[Value]:
     moment = bend([*RATIOS, last])
     for k, found in zip(RATIOS, moment, strict=False):
         yield Value(f"moment at {k:g} times the first curvature", 1.5 - 0.5 / k**2, found, 0.005)
-    yield Value("moment after springback", 0.0, moment[-1], 0.01, "absolute")
+    yield zero("moment after springback", moment[-1], 0.01)
     for ratio in (1.2, 1.45):
         _, found, exact = cantilever(ratio)
         yield Value(

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 import numpy as np
 
 import corota as ct
-from corota.verification.catalogue import Curve, Problem, Value
+from corota.verification.catalogue import Curve, Problem, Value, zero
 from corota.verification.models import boundary, cell, last_frames, prescribe, run
 
 E, NU, YIELD, SIDE = 250e3, 0.25, 5.0, 2.5e-5
@@ -100,7 +100,7 @@ def measure() -> Iterator[Value]:
             )
     for element in ("Q4I", "T6", "Q8", "Q8R", "Q9"):
         worst = float(np.abs(patch(element) - coarse[:, None]).max())
-        yield Value(f"patch of {element} beside the material [MPa]", 0.0, worst, 1e-7, "absolute")
+        yield zero(f"patch of {element} beside the material [MPa]", worst, 1e-7)
 
 
 def curve() -> Curve:

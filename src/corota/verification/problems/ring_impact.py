@@ -14,7 +14,7 @@ from functools import cache
 
 import numpy as np
 
-from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Study, Value, zero
 from corota.verification.impact_models import Flight, fly
 
 AROUND = 24
@@ -50,14 +50,10 @@ def measure() -> Iterator[Value]:
     for element, plastic, increments in CASES:
         flight = flown(element, plastic, increments)
         text = f"{'yielding' if plastic else 'elastic'}, {element}"
-        yield Value(
-            f"largest energy-balance error, {text}",
-            0.0,
-            flight.energy_error,
-            0.03 if plastic else 2e-4,
-            "absolute",
+        yield zero(
+            f"largest energy-balance error, {text}", flight.energy_error, 0.03 if plastic else 2e-4
         )
-        yield Value(f"momentum along the wall, {text}", 0.0, flight.sideways, 1e-9, "absolute")
+        yield zero(f"momentum along the wall, {text}", flight.sideways, 1e-9)
         yield Value(
             f"momentum that the wall gave, {text}", 1.0 + flight.rebound, impulse(flight), 1e-8
         )

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 import corota as ct
-from corota.verification.catalogue import Curve, Picture, Problem, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Value, zero
 from corota.verification.problems.thick_cylinder_plastic import (
     INNER,
     OUTER,
@@ -66,13 +66,7 @@ def measure() -> Iterator[Value]:
         r, mine, size = radial_stress(results)
         exact = np.array([radial(float(v)) for v in r])
         error = float(np.sqrt(size @ (mine - exact) ** 2 / size.sum())) / YIELD
-        yield Value(
-            f"mean error of the radial stress / yield stress, {element}",
-            0.0,
-            error,
-            0.04,
-            "absolute",
-        )
+        yield zero(f"mean error of the radial stress / yield stress, {element}", error, 0.04)
 
 
 def curve() -> Curve:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import corota as ct
-from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Study, Value, zero
 from corota.verification.models import Watch, cantilever, last_frames, run
 
 LENGTH, HEIGHT, YOUNG = 10.0, 0.1, 1.2e9
@@ -53,13 +53,7 @@ def measure() -> Iterator[Value]:
             EXACT.items(), places(solved(element, nx, ny)), strict=True
         ):
             miss = float(np.hypot(*(found - exact)))
-            yield Value(
-                f"miss of the end / L at {part:g}, {element} {nx} x {ny}",
-                0.0,
-                miss,
-                2e-3,
-                "absolute",
-            )
+            yield zero(f"miss of the end / L at {part:g}, {element} {nx} x {ny}", miss, 2e-3)
 
 
 def curve() -> Curve:

@@ -15,7 +15,7 @@ from functools import cache
 import numpy as np
 
 import corota as ct
-from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Study, Value, zero
 from corota.verification.models import DRILLING, cell, run
 
 LIMIT, SIZE, PRESS = 2.0 + np.pi, 5.0, 0.06
@@ -64,13 +64,7 @@ def measure() -> Iterator[Value]:
         found = pressures(solved(element, mean, n))
         text = f"{element}{' with mean dilatation' if mean else ''}, n = {n}"
         yield Value(f"mean pressure / k, {text}", LIMIT, found[-1], tolerance)
-        yield Value(
-            f"growth in the last increment, {text}",
-            0.0,
-            found[-1] / found[-2] - 1.0,
-            1e-3,
-            "absolute",
-        )
+        yield zero(f"growth in the last increment, {text}", found[-1] / found[-2] - 1.0, 1e-3)
     locked = pressures(solved("Q4", False, 8))
     yield Value("mean pressure / k, Q4 that locks, n = 8", 1.2 * LIMIT, locked[-1], 0.0, "at least")
 

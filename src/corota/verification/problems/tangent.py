@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota.verification.catalogue import Problem, Value
+from corota.verification.catalogue import Problem, Value, zero
 from corota.verification.models import DRILLING, ELEMENTS, assemble
 from corota.verification.problems.objectivity import STRAINS, patch, turned
 
@@ -35,13 +35,7 @@ def measure() -> Iterator[Value]:
     """Every element and local strain."""
     for element in ELEMENTS:
         for strain in STRAINS:
-            yield Value(
-                f"error of the tangent, {element}, {strain}",
-                0.0,
-                error(element, strain),
-                1e-7,
-                "absolute",
-            )
+            yield zero(f"error of the tangent, {element}, {strain}", error(element, strain), 1e-7)
 
 
 PROBLEM = Problem(

@@ -16,7 +16,7 @@ from functools import cache
 import numpy as np
 
 import corota as ct
-from corota.verification.catalogue import Curve, Picture, Problem, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Value, zero
 from corota.verification.motion_models import PULSE, block, drift, fly, rod
 
 BODIES = {"block": block, "rod": rod}
@@ -33,7 +33,7 @@ def measure() -> Iterator[Value]:
     """Drifts of both bodies; rates of HHT."""
     for body, element in CASES:
         for name, value in drift(flown(body, element)).items():
-            yield Value(f"drift of the {name}, {body}, {element}", 0.0, value, 1e-9, "absolute")
+            yield zero(f"drift of the {name}, {body}, {element}", value, 1e-9)
     push = flown("block", "Q4I").frames[-1].scalars
     # The pulse is sin^2: half of its height times its length, over a side of 1.
     for axis, force in (("x", 10.0), ("y", 30.0)):
@@ -47,7 +47,7 @@ def measure() -> Iterator[Value]:
     yield Value(
         "angular momentum that HHT loses at most", 1e-2, lost["angular momentum"], 0.0, "at most"
     )
-    yield Value("linear momentum that HHT loses", 0.0, lost["momentum x"], 1e-9, "absolute")
+    yield zero("linear momentum that HHT loses", lost["momentum x"], 1e-9)
 
 
 def curve() -> Curve:
