@@ -241,6 +241,7 @@ class System(NumberedModel):
         """Forces at a state without the tangent."""
         at = self.blank(NOWHERE)
         self._add_terms(REST.point(u, step_time), at, REST)
+        at.link = self.constraints.link(u)
         return at
 
     def reaction(self, at: Evaluation) -> Floats:

@@ -578,7 +578,6 @@ def factor_rate(point: Point) -> Floats:
         u = system.conditions.supports.at(time, point.u)
         system.constraints.complete(u)
         at = system.forces(u, time)
-        at.link = system.constraints.link(u)
         return at.reaction, at.scale
 
     slope, _ = derivative(residual, max(abs(increment.factor), 1.0))

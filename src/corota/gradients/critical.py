@@ -299,7 +299,6 @@ def _move(point: Point, change: Floats) -> None:
     system.constraints.complete(u)
     point.u = u
     point.at = system.forces(u, increment.time)
-    point.at.link = system.constraints.link(u)
     increment.by_node = system.by_node(u)
 
 

@@ -260,7 +260,6 @@ class Trajectory:
             if self.remembers and not given:
                 # Others may have been evaluated meanwhile.
                 at = system.forces(u, increment.time)
-                at.link = system.constraints.link(u)
             if self.slides:
                 self.slide(u, increment)
             last = k + 1 == len(increments) or increments[k + 1].step > increment.step
@@ -278,7 +277,6 @@ class Trajectory:
         system.constraints.complete(u)
         system.elements.reached = increment.begun
         at = system.forces(u, increment.time)
-        at.link = system.constraints.link(u)
         found = Point(system, increment, u, at, self.steps)
         if motion is not None:
             assert increment.rates is not None

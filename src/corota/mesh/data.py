@@ -186,20 +186,21 @@ class Mesh(Brief):
                 node = int(ends[k, 1 - side[k]])
         return np.stack([cells, side], axis=1)
 
+    def cell_edges(self) -> tuple[Ints, Ints]:
+        """A number for the ends of every edge of the cells, and the pairs (cell, local edge)."""
+        keys, pairs = [np.zeros(0, np.int64)], [np.zeros((0, 2), np.int64)]
+        for offset, cells in zip(self.offsets, self.cells, strict=False):
+            rows = np.arange(len(cells), dtype=np.int64) + offset
+            for side, local in enumerate(EDGES[cells.kind]):
+                keys.append(self._edge_key(cells.nodes[:, local[:2]]))
+                pairs.append(np.stack([rows, np.full(len(cells), side, np.int64)], axis=1))
+        return np.concatenate(keys), np.concatenate(pairs)
+
     def boundary_edges(self) -> Ints:
         """Edges that belong to one cell only, shape (n, 2)."""
-        pairs, keys = [], []
-        for offset, cells in zip(self.offsets, self.cells, strict=False):
-            for side, local in enumerate(EDGES[cells.kind]):
-                ends = np.sort(cells.nodes[:, local[:2]], axis=1)
-                keys.append(ends[:, 0] * np.int64(self.n_nodes) + ends[:, 1])
-                rows = np.arange(len(cells), dtype=np.int64) + offset
-                pairs.append(np.stack([rows, np.full(len(cells), side, np.int64)], axis=1))
-        if not keys:
-            return np.zeros((0, 2), np.int64)
-        key = np.concatenate(keys)
-        _, first, count = np.unique(key, return_index=True, return_counts=True)
-        return np.asarray(np.concatenate(pairs)[np.sort(first[count == 1])])
+        keys, pairs = self.cell_edges()
+        _, first, count = np.unique(keys, return_index=True, return_counts=True)
+        return np.asarray(pairs[np.sort(first[count == 1])])
 
     def edges_between(self, ends: ArrayLike) -> Ints:
         """Find the cell edges with given end nodes.
@@ -215,13 +216,7 @@ class Mesh(Brief):
             Global cell index and local edge; of two cells the first one; -1 where no cell has
             such an edge.
         """
-        keys, pairs = [np.zeros(0, np.int64)], [np.zeros((0, 2), np.int64)]
-        for offset, cells in zip(self.offsets, self.cells, strict=False):
-            rows = np.arange(len(cells), dtype=np.int64) + offset
-            for side, local in enumerate(EDGES[cells.kind]):
-                keys.append(self._edge_key(cells.nodes[:, local[:2]]))
-                pairs.append(np.stack([rows, np.full(len(cells), side, np.int64)], axis=1))
-        every = np.concatenate(keys)
+        every, pairs = self.cell_edges()
         order = np.argsort(every, kind="stable")
         every = every[order]
         wanted = self._edge_key(np.asarray(ends, dtype=np.int64).reshape(-1, 2))
@@ -229,7 +224,7 @@ class Mesh(Brief):
         if len(every):
             at = np.minimum(np.searchsorted(every, wanted), len(every) - 1)
             hit = every[at] == wanted
-            found[hit] = np.concatenate(pairs)[order[at[hit]]]
+            found[hit] = pairs[order[at[hit]]]
         return found
 
     def _edge_key(self, ends: Ints) -> Ints:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.arrays import Bools, Ints, distinct
-from corota.mesh.kinds import EDGES
 
 if TYPE_CHECKING:
     from corota.mesh.data import Mesh
@@ -23,6 +22,13 @@ def cells_of(mesh: Mesh, where: str | Ints) -> Ints:
     if where in ("", "all"):
         return np.arange(mesh.n_cells)
     return np.zeros(0, np.int64)
+
+
+def nodes_of(mesh: Mesh, where: str | Ints) -> Ints:
+    """Node indices of a set name (the empty name: every node) or array."""
+    if isinstance(where, str):
+        return mesh.nodes_of(where) if where else np.arange(mesh.n_nodes)
+    return np.asarray(where, np.int64)
 
 
 def nodes_of_cells(mesh: Mesh, cells: Ints) -> Ints:
@@ -51,13 +57,8 @@ def part_of_nodes(mesh: Mesh) -> Ints:
 
 def stiff_part_of_cells(mesh: Mesh) -> Ints:
     """Number the parts connected by common sides; shape (n_cells,)."""
-    keys, rows = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    for offset, block in zip(mesh.offsets, mesh.cells, strict=False):
-        for local in EDGES[block.kind]:
-            ends = np.sort(block.nodes[:, local[:2]], axis=1)
-            keys.append(ends[:, 0] * np.int64(mesh.n_nodes) + ends[:, 1])
-            rows.append(np.arange(len(block)) + offset)
-    key, row = np.concatenate(keys), np.concatenate(rows)
+    key, pairs = mesh.cell_edges()
+    row = pairs[:, 0]
     order = np.argsort(key, kind="stable")
     same = np.flatnonzero(np.diff(key[order]) == 0)
     return components(row[order[same]], row[order[same + 1]], mesh.n_cells)

@@ -43,8 +43,7 @@ def along(
         figure, ax = figure_of(ax, 5.2, 3.7, shown=path is None)
         for name in names:
             ax.plot(line.distance, line.values(name), linewidth=1.4, label=name, zorder=3)
-        length = units.label("length")
-        ax.set_xlabel("distance along the line" + (f" [{length}]" if length else ""))
+        ax.set_xlabel(labeled("distance along the line", units, "length"))
         if len(names) == 1:
             ax.set_ylabel(f"{names[0]}: {described(names[0], units)}")
         else:

@@ -23,6 +23,7 @@ from corota.plots.figure import (
 )
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import outline
+from corota.results.variables import labeled
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -114,8 +115,7 @@ def section_forces(
         _extremes(ax, ends, tops, values, largest)
         plane_axes(ax, low, high, 0.07 * size, units)
         what, of = NAMES[name]
-        unit = units.label(of)
-        head = f"{name}: {what}" + (f" [{unit}]" if unit else "")
+        head = labeled(f"{name}: {what}", units, of)
         heading = frame_title(results, members.frame, scale)
         ax.set_title(title if title is not None else f"{head}\n{heading}", loc="left")
         return finish(figure, path, dpi)
@@ -200,8 +200,7 @@ def section_diagram(
     matplotlib.figure.Figure
     """
     results = diagram.results
-    length = results.model.unit_system.label("length")
-    along = "along the axis" + (f" [{length}]" if length else "")
+    along = labeled("along the axis", results.model.unit_system, "length")
     rows = [diagram.N, diagram.V, diagram.M]
     return _three(
         results, diagram.distance, rows, along, title or results.model.name, path, dpi, True
@@ -231,10 +230,9 @@ def section_history(
     results = cut.results
     found = [cut.forces(i) for i in range(len(results.frames))]
     rows = [np.array([getattr(f, name) for f in found]) for name in NAMES]
-    unit = results.model.unit_system.label("time")
     (a, b), (c, d) = cut.start, cut.end
     heading = title or f"{results.model.name}: cut from ({a:g}, {b:g}) to ({c:g}, {d:g})"
-    x = "time" + (f" [{unit}]" if unit else "")
+    x = labeled("time", results.model.unit_system)
     return _three(results, results.times, rows, x, heading, path, dpi, False)
 
 
@@ -266,8 +264,7 @@ def _three(
                     ax.fill_between(
                         x, 0.0, shown, keep, color=color, alpha=0.35, lw=0.0, interpolate=True
                     )
-            unit = units.label(of)
-            ax.set_ylabel(f"{what}\n{name}" + (f" [{unit}]" if unit else ""))
+            ax.set_ylabel(labeled(f"{what}\n{name}", units, of))
             ax.margins(x=0.0, y=0.12)
             chart(ax)
         panels[-1].set_xlabel(along)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.mesh.parts import cells_of, nodes_of
 from corota.model import elements
 from corota.model.constraints import Coupling
 from corota.plots.figure import INK
@@ -14,21 +15,12 @@ from corota.plots.figure import INK
 if TYPE_CHECKING:
     from corota.arrays import Floats
     from corota.model.model import Model
-    from corota.model.sections import Section
 
 
 #: Beams, bars, springs and links are distinct from cell edges and supports.
 BEAM, BAR, SPRING, LINK = "#35506e", "#8a5a2b", "#8c2f6b", "#9aa3ae"
 #: Windings of a spring, and their height over the diagonal of the model.
 WINDINGS, HEIGHT = 5, 0.012
-
-
-def _cells(subject: Model, section: Section) -> list[int]:
-    where = section.cells
-    if isinstance(where, str):
-        found = subject.mesh.cell_sets.get(where, np.arange(subject.mesh.n_cells))
-        return [int(c) for c in found]
-    return [int(c) for c in where]
 
 
 def zigzag(first: Floats, last: Floats, height: float) -> Floats:
@@ -58,7 +50,7 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
         facts = elements.find(section.element)
         if not facts.line:
             continue
-        for cell in _cells(subject, section):
+        for cell in cells_of(mesh, section.cells).tolist():
             block, row = mesh.locate(cell)
             ends = mesh.points[mesh.cells[block].nodes[row]]
             if not facts.spring:
@@ -110,9 +102,8 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
             markeredgewidth=0.9,
         )
     for mass in subject.point_masses:
-        where = mass.nodes
-        nodes = mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
-        ax.plot(*mesh.points[nodes].T, "o", markersize=7.0, color=INK, zorder=3)
+        at = mesh.points[nodes_of(mesh, mass.nodes)]
+        ax.plot(*at.T, "o", markersize=7.0, color=INK, zorder=3)
     draw_links(ax, subject, mesh.points)
     for constraint in subject.constraints:
         if isinstance(constraint, Coupling):

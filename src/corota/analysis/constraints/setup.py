@@ -11,6 +11,7 @@ from corota.analysis.constraints.relations import Follow, LinearRelation, Mean, 
 from corota.analysis.constraints.straight_line import OnLine
 from corota.arrays import Bools, Floats, Ints, distinct
 from corota.errors import Location, ModelError
+from corota.mesh.parts import nodes_of
 from corota.model.constraints import Coupling, Equation, StraightLine
 from corota.model.contact import RigidCurve, is_gap, of_gap
 
@@ -23,12 +24,6 @@ if TYPE_CHECKING:
 NAMES = ("x", "y", "rotation")
 #: Nodes of a straight line may be off it by this fraction of its length; the offset is removed.
 OFF_LINE = 1e-6
-
-
-def _nodes(model: Model, where: str | Ints) -> Ints:
-    if isinstance(where, str):
-        return model.mesh.nodes_of(where)
-    return np.asarray(where, np.int64)
 
 
 def extra_dofs(model: Model, in_element: Bools) -> NDArray[np.uint8]:
@@ -45,11 +40,11 @@ def extra_dofs(model: Model, in_element: Bools) -> NDArray[np.uint8]:
                 if not in_element[node]:
                     extra[node] = max(extra[node], 2, dof + 1)
         elif isinstance(item, StraightLine):
-            named = np.append(_nodes(model, item.nodes), [item.first, item.last])
+            named = np.append(nodes_of(model.mesh, item.nodes), [item.first, item.last])
             loose = named[~in_element[named]]
             extra[loose] = np.maximum(extra[loose], 2)
         else:
-            nodes = _nodes(model, item.nodes)
+            nodes = nodes_of(model.mesh, item.nodes)
             loose = nodes[~in_element[nodes]]
             if item.kind == "distributing" and len(loose):
                 label = model.mesh.node_labels[loose[0]]
@@ -88,7 +83,7 @@ def carry_attachments(model: Model, carried: Ints, extra: NDArray[np.uint8]) -> 
     """Give nodes of point masses and dashpots their dofs; changes `carried`, returns `extra`."""
     wanted = np.zeros(model.mesh.n_nodes, np.uint8)
     for mass in model.point_masses:
-        nodes = _nodes(model, mass.nodes)
+        nodes = nodes_of(model.mesh, mass.nodes)
         wanted[nodes] = np.maximum(wanted[nodes], 3 if mass.inertia else 2)
     for item in model.dashpots:
         turns = item.to_ground[2] > 0.0 or 2 in (item.dofs or ())
@@ -266,7 +261,7 @@ class Builder:
         return f"the {item.name or item.kind + ' coupling'} with reference node {label}"
 
     def _members(self, item: Coupling) -> Ints:
-        every: Ints = distinct(_nodes(self.model, item.nodes))
+        every: Ints = distinct(nodes_of(self.model.mesh, item.nodes))
         nodes: Ints = every[every != item.reference]
         if not len(nodes):
             raise ModelError(
@@ -284,7 +279,7 @@ class Builder:
         length = float(np.hypot(*along))
         if not length > 0.0:
             raise ModelError(f"{what} has no direction: they have the same position", item.where)
-        nodes = distinct(_nodes(self.model, item.nodes))
+        nodes = distinct(nodes_of(self.model.mesh, item.nodes))
         nodes = nodes[~np.isin(nodes, ends)]
         if not len(nodes):
             raise ModelError(f"{what} has no other nodes", item.where)
@@ -331,7 +326,7 @@ class Builder:
         )
 
     def _mean(self, item: Coupling) -> Mean:
-        given, points = _nodes(self.model, item.nodes), self.model.mesh.points
+        given, points = nodes_of(self.model.mesh, item.nodes), self.model.mesh.points
         nodes = self._members(item)
         weight = np.ones(len(nodes))
         if item.weights is not None:

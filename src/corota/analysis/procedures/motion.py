@@ -329,10 +329,9 @@ class EndForces:
             share = half / (half + self._lag)
             inertia = inertia + share * (inertia - begin.inertia - begin.damping)
             self._lag = half
-            own = system.forces(end.u, step_time)
-            internal, external = own.internal, own.external
             # Forces of the end have their moments about the masters as they lie there.
-            link = system.constraints.link(end.u)
+            own = system.forces(end.u, step_time)
+            internal, external, link = own.internal, own.external, own.link
         internal = internal - contact
         self.at = Evaluation(internal, external, internal, np.empty(0), None, link)
         whole = link.gather(internal + inertia - external)

@@ -12,6 +12,7 @@ from corota.analysis.terms.damping import Damping
 from corota.analysis.terms.inertia import Inertia, MotionState
 from corota.analysis.terms.term import StatePoint
 from corota.errors import ModelError
+from corota.mesh.parts import nodes_of
 from corota.model import elements
 
 if TYPE_CHECKING:
@@ -168,11 +169,7 @@ def initial_velocity(system: System, u: Floats | None = None) -> Floats:
     if system.nlgeom:
         points = points + system.by_node(u)[:, :2]
     for item in system.model.velocities:
-        if isinstance(item.nodes, str):
-            everywhere = np.arange(len(points))
-            nodes = system.model.mesh.nodes_of(item.nodes) if item.nodes else everywhere
-        else:
-            nodes = np.asarray(item.nodes, np.int64)
+        nodes = nodes_of(system.model.mesh, item.nodes)
         if item.dof is not None:
             out[nodes, item.dof] = item.value[0]
             continue

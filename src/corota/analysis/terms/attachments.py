@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.mesh.parts import nodes_of
+
 if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.arrays import Floats, Ints
@@ -34,11 +36,7 @@ class Attachments:
         self.system = system
         self.mass = np.zeros(system.n_dofs)
         for item in system.model.point_masses:
-            nodes = (
-                system.model.mesh.nodes_of(item.nodes)
-                if isinstance(item.nodes, str)
-                else (np.asarray(item.nodes, np.int64))
-            )
+            nodes = nodes_of(system.model.mesh, item.nodes)
             for dof, value in enumerate((item.mass, item.mass, item.inertia)):
                 if value:
                     np.add.at(self.mass, system.attached_dofs(nodes, dof, "point mass"), value)

@@ -20,6 +20,7 @@ import numpy as np
 
 from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.errors import InputError, Location, ModelError
+from corota.mesh.parts import nodes_of
 from corota.model import elements
 from corota.model.material_table import MaterialTable
 from corota.model.materials import Expansion, Material
@@ -341,7 +342,7 @@ def start_temperatures(model: Model) -> Floats:
     """
     start = np.zeros(model.mesh.n_nodes)
     for item in model.initial_temperatures:
-        nodes = _nodes(model, item.nodes)
+        nodes = nodes_of(model.mesh, item.nodes)
         try:
             start[nodes] = item.value
         except ValueError:
@@ -427,9 +428,3 @@ def _block(
 def _follows(material: Material) -> TypeGuard[MaterialTable]:
     """Whether constants of the material depend on the temperature."""
     return isinstance(material, MaterialTable) and material.varies
-
-
-def _nodes(model: Model, where: str | Ints) -> Ints | slice:
-    if isinstance(where, str):
-        return model.mesh.nodes_of(where) if where else slice(None)
-    return where
