@@ -63,8 +63,8 @@ class DistributedLoad:
         Whether the step removed the load.
     force : Distribution
         Its force per unit scale, given when the load is built.
-    faces : ndarray, shape (n, 2), or None
-        Cell and side of loaded edges; node and direction of follower forces.
+    faces : ndarray, shape (n, 2)
+        Cell and side of loaded edges; node and direction of follower forces; empty for bodies.
     traction : tuple of float
         Of tractions and shear: force per area and unit scale; of follower forces, their values.
     item : EdgeLoad, BodyForce or NodalForce
@@ -77,7 +77,7 @@ class DistributedLoad:
     item: Item
     removed: bool = False
     force: Distribution = field(init=False)
-    faces: Ints | None = None
+    faces: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int64))
     traction: tuple[float, ...] = (0.0, 0.0)
 
 
@@ -135,8 +135,8 @@ class DistributedLoads:
         """Forget loads on the edges of cells that are not in the structure, shape (n_cells,)."""
         kept = []
         for load in self.loads:
-            on = isinstance(load.item, EdgeLoad) and load.faces is not None
-            gone = removed[load.faces[:, 0]] if on and load.faces is not None else np.zeros(1, bool)
+            on = isinstance(load.item, EdgeLoad)
+            gone = removed[load.faces[:, 0]] if on else np.zeros(1, bool)
             if not gone.any():
                 kept.append(load)
             elif not gone.all():
@@ -149,8 +149,8 @@ class DistributedLoads:
         """Ramp from older loads on the same edges, nodes or sets to the new one."""
         kept: list[DistributedLoad] = []
         for old in self.loads:
-            if old.faces is None or new.faces is None:
-                one, other = old.item, new.item
+            one, other = old.item, new.item
+            if isinstance(one, BodyForce) or isinstance(other, BodyForce):
                 if not (isinstance(one, BodyForce) and isinstance(other, BodyForce)):
                     kept.append(old)
                 elif one.kind == other.kind and other.every:
@@ -176,7 +176,6 @@ class DistributedLoads:
 
     def _part(self, load: DistributedLoad, chosen: Bools) -> DistributedLoad:
         """The same load on some of its edges or nodes."""
-        assert load.faces is not None
         faces = load.faces[chosen]
         if isinstance(load.item, NodalForce):
             values = tuple(np.asarray(load.traction)[chosen].tolist())
@@ -247,7 +246,6 @@ class DistributedLoads:
         return found
 
     def _at_nodes(self, load: DistributedLoad) -> DistributedLoad:
-        assert load.faces is not None
         assert isinstance(load.item, NodalForce)
         nodes, system = load.faces[:, 0], self.system
         bare = system.per_node[nodes] < 3
@@ -265,7 +263,6 @@ class DistributedLoads:
 
     def _edge_load(self, load: DistributedLoad) -> DistributedLoad:
         """Build a load on edges with the data of its faces in the core."""
-        assert load.faces is not None
         assert isinstance(load.item, EdgeLoad)
         if load.item.kind in ("following traction", "shear"):
             load.force = self._following(load)
@@ -289,7 +286,6 @@ class DistributedLoads:
 
     def _following(self, load: DistributedLoad) -> FollowingTraction:
         """A follower traction; edges of drilling elements are separate."""
-        assert load.faces is not None
         nodes, thickness, alpha = self._edges(load.faces)
         x = self.system.model.mesh.points
         along = x[nodes[:, 1]] - x[nodes[:, 0]]
@@ -306,7 +302,6 @@ class DistributedLoads:
     def _electrostatic(self, load: DistributedLoad) -> ElectrostaticPressure:
         from corota.analysis.electrostatics import ElectrostaticPressure
 
-        assert load.faces is not None
         assert isinstance(load.item, EdgeLoad)
         nodes, thickness, _ = self._edges(load.faces)
         strength, *line = load.traction
@@ -323,7 +318,6 @@ class DistributedLoads:
 
         item = load.item
         assert isinstance(item, EdgeLoad)
-        assert load.faces is not None
         assert item.start is not None
         chain, opposite = Edges(*self._edges(load.faces)), None
         if item.opposite is not None:
@@ -457,8 +451,6 @@ def _goes_on(old: DistributedLoad, new: DistributedLoad) -> bool:
         return False
     from corota.analysis.penetration import PenetratingPressure
 
-    assert old.faces is not None
-    assert new.faces is not None
     both = np.isin(_codes(old.faces), _codes(new.faces))
     if not both.any():
         return False

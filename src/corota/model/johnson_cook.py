@@ -6,10 +6,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from corota.arrays import Floats
 from corota.errors import InputError
 from corota.model.material_table import MaterialTable
-from corota.model.materials import _positive, isotropic_compliance
+from corota.model.materials import _positive
 from corota.model.single_point import LawOfTheCore
 
 
@@ -127,9 +126,6 @@ class JohnsonCook(LawOfTheCore):
         rows = [(t, replace(self, temperature=t)) for t in (low, self.melting)]
         return MaterialTable(rows, rho=self.rho, name=self.name, where=self.where,
                              expansion=self.expansion, rayleigh=self.rayleigh)  # fmt: skip
-
-    def compliance(self) -> Floats:
-        return isotropic_compliance(self.E, self.nu)
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
         """``E, nu, 0``, then hardening, rate and heat, each after the number of its numbers."""

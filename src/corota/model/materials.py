@@ -172,6 +172,8 @@ class Material(Brief):
 
         Shear is engineering shear.
         """
+        if self.elastic_constants:
+            return self.compliance_of(np.array(self.parameters()[: self.elastic_constants]))
         raise InputError(
             f"a material of type {type(self).__name__} has no elastic constants for thermal "
             "strain or initial stress; include them in the function itself",
@@ -246,9 +248,6 @@ class Elastic(Material):
         self._check_isotropic(self.E, self.nu)
         self._check_motion()
 
-    def compliance(self) -> Floats:
-        return isotropic_compliance(self.E, self.nu)
-
     def parameters(self, orientation: float = 0.0) -> list[float]:
         return [self.E, self.nu]
 
@@ -308,9 +307,6 @@ class Orthotropic(Material):
                 self.where,
             )
         self._check_motion()
-
-    def compliance(self) -> Floats:
-        return self.compliance_of(np.array(self.parameters()[:7]))
 
     @staticmethod
     def compliance_of(constants: Floats) -> Floats:

@@ -7,10 +7,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from corota.arrays import Floats
 from corota.display import Brief
 from corota.errors import InputError, Location
-from corota.model.materials import _positive, isotropic_compliance
+from corota.model.materials import _positive
 from corota.model.rates import Norton, Rate, RateCurves
 from corota.model.single_point import LawOfTheCore
 
@@ -210,9 +209,6 @@ class Mises(LawOfTheCore):
             return float(self.yield_curve[0][0])
         # Creep alone has no yield: a stress for pictures and scales.
         return 1e-3 * self.E if self.yield_stress is None else self.yield_stress
-
-    def compliance(self) -> Floats:
-        return isotropic_compliance(self.E, self.nu)
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
         """``E, nu, n``, n pairs ``C, gamma``, then the kind of hardening and its numbers.

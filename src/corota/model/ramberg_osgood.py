@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
-from corota.model.materials import _positive, isotropic_compliance
+from corota.model.materials import _positive
 from corota.model.single_point import LawOfTheCore
 
 if TYPE_CHECKING:
@@ -99,9 +99,6 @@ class RambergOsgood(LawOfTheCore):
             low, high = np.where(grown < wanted, s, low), np.where(grown < wanted, high, s)
         out: Floats = np.copysign(high, strain)
         return out
-
-    def compliance(self) -> Floats:
-        return isotropic_compliance(self.E, self.nu)
 
     @classmethod
     def complementary_of(cls, constants: Floats, stress: Floats) -> Floats:
