@@ -8,7 +8,6 @@ import os
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO
 
 from corota.errors import FileError
 from corota.io.regular_file import open_to_write
@@ -29,8 +28,9 @@ def full(error: OSError, path: Path) -> FileError:
     return FileError(f"{path}: cannot write: {reason}")
 
 
-def sync(path: Path) -> None:
-    """Flush a file to the disk.
+@contextlib.contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Report errors of the system as those of writing a file.
 
     Raises
     ------
@@ -38,10 +38,15 @@ def sync(path: Path) -> None:
         If writing fails.
     """
     try:
-        with open(path, "rb") as file:
-            os.fsync(file.fileno())
+        yield
     except OSError as error:
         raise full(error, path) from None
+
+
+def sync(path: Path) -> None:
+    """Flush a file to the disk; as :func:`writing`."""
+    with writing(path), open(path, "rb") as file:
+        os.fsync(file.fileno())
 
 
 class AtomicFile:
@@ -73,7 +78,7 @@ class AtomicFile:
         self._pages: dict[int, bytearray] = {}
         self._behind: dict[int, bytearray] = {}
         self._shown = False
-        try:
+        with writing(path):
             self.hidden.unlink(missing_ok=True)
             if keep:
                 copyfile(path, self.hidden)
@@ -81,8 +86,6 @@ class AtomicFile:
                 self._shown = True
             else:
                 self.hidden.touch()
-        except OSError as error:
-            raise full(error, path) from None
 
     # File-like interface for HDF5.
     def seek(self, offset: int, whence: int = 0) -> int:
@@ -157,47 +160,33 @@ class AtomicFile:
         """
         if not self._pages and self._shown:
             return
-        try:
+        with writing(self.path):
             with open(self.hidden, "r+b") as file:
-                self._apply(file, self._behind)
-                self._apply(file, self._pages)
+                for pages in (self._behind, self._pages):
+                    for number, page in sorted(pages.items()):
+                        file.seek(number * PAGE)
+                        file.write(page)
                 file.truncate(self._size)
                 if time.monotonic() - self._born >= YOUNG:
                     file.flush()
                     os.fsync(file.fileno())
-        except OSError as error:
-            raise full(error, self.path) from None
-        self._behind, self._pages = self._pages, {}
-        try:
+            self._behind, self._pages = self._pages, {}
             self._swap(last)
-        except OSError as error:
-            raise full(error, self.path) from None
-
-    def _apply(self, file: IO[bytes], pages: dict[int, bytearray]) -> None:
-        for number, page in sorted(pages.items()):
-            file.seek(number * PAGE)
-            file.write(page)
 
     def _swap(self, last: bool) -> None:
-        if last:
-            os.replace(self.hidden, self.path)
-            return
-        if not self._shown:
-            os.replace(self.hidden, self.path)
-            copyfile(self.path, self.hidden)
-            self._behind = {}
-            self._shown = True
-            return
-        try:
-            self._spare.unlink(missing_ok=True)
-            os.link(self.path, self._spare)
-        except OSError:  # a file system without hard links: the copy costs more, not safety
-            os.replace(self.hidden, self.path)
-            copyfile(self.path, self.hidden)
-            self._behind = {}
-            return
+        linked = self._shown and not last
+        if linked:
+            try:
+                self._spare.unlink(missing_ok=True)
+                os.link(self.path, self._spare)
+            except OSError:  # a file system without hard links: the copy costs more, not safety
+                linked = False
         os.replace(self.hidden, self.path)
-        os.replace(self._spare, self.hidden)
+        if linked:
+            os.replace(self._spare, self.hidden)
+        elif not last:
+            copyfile(self.path, self.hidden)
+            self._behind, self._shown = {}, True
 
     def sync(self) -> None:
         """Flush the last commit to the disk."""
@@ -224,12 +213,10 @@ class TextFile:
 
     def __init__(self, path: Path, keep: bool = False) -> None:
         self.path = path
-        try:
+        with writing(path):
             file = open_to_write(path, os.O_RDWR | (0 if keep else os.O_TRUNC))
             self._file = open(file, "r+b", buffering=0)  # noqa: SIM115 (closed by close)
             self._file.seek(0, os.SEEK_END)
-        except OSError as error:
-            raise full(error, path) from None
 
     def append(self, text: str | bytes) -> None:
         """Write a piece and flush it at once.
@@ -265,18 +252,14 @@ class TextFile:
         """
         if self.length < length:
             raise FileError(f"{self.path}: {self.length} bytes, the checkpoint expects {length}")
-        try:
+        with writing(self.path):
             self._file.truncate(length)
             self._file.seek(length)
-        except OSError as error:
-            raise full(error, self.path) from None
 
     def sync(self) -> None:
         """Flush everything to the disk."""
-        try:
+        with writing(self.path):
             os.fsync(self._file.fileno())
-        except OSError as error:
-            raise full(error, self.path) from None
 
     def close(self) -> None:
         """Close the file."""
@@ -284,20 +267,34 @@ class TextFile:
             self._file.close()
 
 
-def replace_text(path: Path, text: str) -> None:
-    """Write a small text file at once: temporary name, then renaming.
+@contextlib.contextmanager
+def replaced(path: Path, suffix: str = "") -> Iterator[Path]:
+    """Write a file under a temporary name, which the body gets and which then takes its place.
+
+    Parameters
+    ----------
+    path : Path
+    suffix : str
+        End of the temporary name, for writers that choose the format by it.
 
     Raises
     ------
     FileError
         If writing fails; an earlier file of that name stays.
     """
-    hidden = path.with_name(f".{path.name}.next")
+    stem = path.name.removesuffix(path.suffix) if suffix else path.name
+    hidden = path.with_name(f".{stem}.next{suffix}")
     try:
         hidden.unlink(missing_ok=True)  # it may be a link
-        hidden.write_text(text, encoding="utf-8", newline="\n")
+        yield hidden
         os.replace(hidden, path)
     except OSError as error:
         with contextlib.suppress(OSError):
             hidden.unlink(missing_ok=True)
         raise full(error, path) from None
+
+
+def replace_text(path: Path, text: str) -> None:
+    """Write a small text file at once; see :func:`replaced`."""
+    with replaced(path) as hidden:
+        hidden.write_text(text, encoding="utf-8", newline="\n")

@@ -9,7 +9,6 @@ under another name, flushed to the disk and renamed, so that no name ever stands
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import json
 import os
 from dataclasses import dataclass, fields
@@ -21,9 +20,9 @@ import numpy as np
 from corota.analysis.checkpoint import Checkpoint
 from corota.analysis.state_tree import Reader, UnsuitableState
 from corota.errors import FileError
-from corota.io.atomic_file import full
+from corota.io.atomic_file import replaced
 from corota.io.file_options import CHECKPOINTS
-from corota.io.regular_file import parse_json, require_regular
+from corota.io.regular_file import digest, parse_json, require_regular
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -105,12 +104,10 @@ def store(
 
     from corota._core import __version__
 
-    hidden = path.with_name(f".{path.name}.next")
     head = {
         f.name: getattr(state, f.name) for f in fields(state) if f.name not in ("tree", "arrays")
     }
-    try:
-        hidden.unlink(missing_ok=True)  # it may be a link
+    with replaced(path) as hidden:
         with h5py.File(hidden, "w", userblock_size=HEAD) as file:
             file.attrs["program"] = __version__
             file.attrs["job"], file.attrs["run"] = job, run
@@ -124,24 +121,20 @@ def store(
                 _tree(own, model[0], model[1])
         with open(hidden, "r+b") as raw:
             raw.seek(HEAD)
-            found, length = hashlib.sha256(), 0
-            while block := raw.read(1 << 22):
-                found.update(block)
-                length += len(block)
-            text = f"{MAGIC}sha256 {found.hexdigest()}\nbytes {length}\n"
+            text = _head(*digest(raw))
             raw.seek(0)
-            raw.write(text.encode().ljust(HEAD, b"\0"))
+            raw.write(text)
             raw.flush()
             os.fsync(raw.fileno())
         older = path.with_name(f"{path.name}.1")
         if path.exists():
             os.replace(path, older)
-        os.replace(hidden, path)
-        sync_folder(path.parent)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            hidden.unlink(missing_ok=True)
-        raise full(error, path) from None
+    sync_folder(path.parent)
+
+
+def _head(sha256: str, size: int) -> bytes:
+    """First block of a file."""
+    return f"{MAGIC}sha256 {sha256}\nbytes {size}\n".encode().ljust(HEAD, b"\0")
 
 
 def sync_folder(folder: Path) -> None:
@@ -244,20 +237,15 @@ def _check_head(path: Path, head: bytes, raw: Any) -> None:
     try:
         wanted = lines[1].removeprefix("sha256 ")
         length = int(lines[2].removeprefix("bytes "))
-        whole = len(
-            lines
-        ) == 3 and head == f"{MAGIC}sha256 {wanted}\nbytes {length}\n".encode().ljust(HEAD, b"\0")
+        whole = head == _head(wanted, length)
     except (IndexError, ValueError):
         whole = False
     if not whole:
         raise FileError(f"{path}: damaged: its first block is not readable")
-    found, size = hashlib.sha256(), 0
-    while block := raw.read(1 << 22):
-        found.update(block)
-        size += len(block)
+    found, size = digest(raw)
     if size != length:
         raise FileError(f"{path}: damaged: {size} bytes of {length}")
-    if found.hexdigest() != wanted:
+    if found != wanted:
         raise FileError(f"{path}: damaged: its checksum is wrong")
 
 

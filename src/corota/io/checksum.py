@@ -6,12 +6,7 @@ Source: J. G. Fletcher, *IEEE Trans. Commun.* 30 (1982) 247-252; HDF5, ``H5check
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-
-if TYPE_CHECKING:
-    pass
 
 #: Words that are summed at once; their weighted sum stays below 2^32.
 WORDS = 256

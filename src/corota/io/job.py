@@ -7,6 +7,7 @@ import contextlib
 import glob
 import os
 import time
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -418,11 +419,7 @@ class JobFiles(BaseObserver):
             "folder": str(self.folder),
             "formats": self._formats,
             "histories": list(self._extra),
-            "points": self._form.points,
-            "single": self._form.single,
-            "fields": self._form.fields,
-            "compression": self._form.compression,
-            "parts": self._form.parts,
+            **asdict(self._form),
             "every": self._every,
             "seconds": self._seconds,
             "source": self._place,

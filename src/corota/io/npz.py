@@ -3,13 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import contextlib
-import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.io.atomic_file import full
+from corota.io.atomic_file import replaced
 from corota.io.finite import check_frame
 
 if TYPE_CHECKING:
@@ -58,13 +56,5 @@ def write_npz(results: Results, path: Path) -> None:
             data[f"{name}_{number}"] = np.stack(values)
     for name in frames[-1].scalars:
         data[name.replace(" ", "_")] = np.array([f.scalars.get(name, 0.0) for f in frames])
-    hidden = path.with_name(f".{path.name}.next")
-    try:
-        hidden.unlink(missing_ok=True)  # it may be a link
-        with open(hidden, "wb") as file:
-            np.savez_compressed(file, **data)
-        os.replace(hidden, path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            hidden.unlink(missing_ok=True)
-        raise full(error, path) from None
+    with replaced(path) as hidden, open(hidden, "wb") as file:
+        np.savez_compressed(file, **data)

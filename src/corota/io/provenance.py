@@ -13,7 +13,7 @@ from typing import Any
 
 from corota.errors import FileError
 from corota.io.atomic_file import replace_text
-from corota.io.regular_file import require_regular
+from corota.io.regular_file import digest, require_regular
 
 #: Libraries that affect the numbers and the files.
 LIBRARIES = ("numpy", "scipy", "h5py")
@@ -27,15 +27,10 @@ def sha256(path: str | PathLike[str]) -> str:
     FileError
         If it cannot be read.
     """
-    import hashlib
-
     require_regular(path)
     try:
-        found = hashlib.sha256()
         with open(path, "rb") as file:
-            while block := file.read(1 << 20):
-                found.update(block)
-        return found.hexdigest()
+            return digest(file)[0]
     except OSError as error:
         raise FileError(f"{path}: cannot read: {error.strerror or error}") from None
 
@@ -79,9 +74,9 @@ def changed_file(source: Mapping[str, Any], deck: str | PathLike[str]) -> str:
     folder = Path(deck).resolve().parent
     wanted = {str(deck): source["sha256"]}
     wanted |= {str(folder / name): digest for name, digest in source.get("included", {}).items()}
-    for name, digest in wanted.items():
+    for name, expected in wanted.items():
         try:
-            if sha256(name) != digest:
+            if sha256(name) != expected:
                 return name
         except FileError:
             return name

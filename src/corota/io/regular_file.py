@@ -8,7 +8,7 @@ import json
 import os
 import stat
 from os import PathLike
-from typing import Any
+from typing import IO, Any
 
 from corota.errors import FileError
 
@@ -85,6 +85,17 @@ def read_bytes(path: str | PathLike[str]) -> bytes:
             return file.read()
     except OSError as error:
         raise FileError(f"{path}: cannot read: {error.strerror or error}") from None
+
+
+def digest(file: IO[bytes]) -> tuple[str, int]:
+    """SHA-256 of the rest of an open file, and its number of bytes."""
+    import hashlib
+
+    found, size = hashlib.sha256(), 0
+    while block := file.read(1 << 22):
+        found.update(block)
+        size += len(block)
+    return found.hexdigest(), size
 
 
 def parse_json(text: str | bytes) -> Any:

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -10,6 +11,7 @@ from corota.analysis.run import solve
 from corota.analysis.state_tree import UnsuitableState
 from corota.errors import FileError, InputError
 from corota.io.checkpoint import Saved, newest, rebuilt
+from corota.io.file_options import FileOptions
 from corota.io.job import JobFiles
 from corota.model.steps import Step
 
@@ -115,11 +117,7 @@ def files_of(saved: Saved, folder: str | PathLike[str] | None = None) -> JobFile
         saved.job,
         formats=options["formats"],
         histories=options["histories"],
-        points=options["points"],
-        single=options["single"],
-        fields=options["fields"],
-        compression=options["compression"],
-        parts=options["parts"],
+        **{f.name: options[f.name] for f in fields(FileOptions)},
         checkpoint_every=options["every"],
         checkpoint_seconds=options["seconds"],
         source=options["source"],

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import shutil
 import subprocess
 from base64 import b64encode
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from corota.errors import InputError
-from corota.io.atomic_file import full
+from corota.io.atomic_file import replaced
 from corota.names import choose
 from corota.plots.contour import Drawing, color_bar, frame_title, label_bar, paint
 from corota.plots.figure import (
@@ -171,14 +170,8 @@ def animate(
                     image, last = stage.picture(), i
                 yield image
 
-    hidden = target.with_name(f".{target.stem}.next{target.suffix.lower()}")
-    try:
+    with replaced(target, target.suffix.lower()) as hidden:
         FORMATS[target.suffix.lower()](pictures(), hidden, rate)
-        os.replace(hidden, target)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            hidden.unlink(missing_ok=True)
-        raise full(error, target) from None
     return target
 
 

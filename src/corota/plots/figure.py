@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import re
 import warnings
 from contextvars import ContextVar
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakSet
 
 from corota.errors import InputError, ResourceError
-from corota.io.atomic_file import full
+from corota.io.atomic_file import replaced
 from corota.plots.palette import LINES
 
 if TYPE_CHECKING:
@@ -179,16 +178,9 @@ def save(figure: Any, path: str | PathLike[str], dpi: float = 150.0) -> Path:
         If writing fails.
     """
     target = picture_path(path)
-    hidden = target.with_name(f".{target.name}.next")
-    try:
-        with look():
-            _plain_powers(figure)
-            figure.savefig(hidden, dpi=dpi, format=target.suffix[1:].lower())
-        os.replace(hidden, target)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            hidden.unlink(missing_ok=True)
-        raise full(error, target) from None
+    with replaced(target) as hidden, look():
+        _plain_powers(figure)
+        figure.savefig(hidden, dpi=dpi, format=target.suffix[1:].lower())
     return target
 
 

@@ -407,39 +407,12 @@ class BehaviorDraft:
 
 
 @dataclass(eq=False, repr=False)
-class NonstructuralDraft:
-    """One ``*NONSTRUCTURAL MASS``: a mass in the elements of a set, without stiffness.
-
-    ``units`` says what the value is per; a total is shared by mass, or ``by_volume``.
-    """
-
-    row: Row
-    elset: str
-    value: float
-    units: str
-    by_volume: bool = False
-
-
-@dataclass(eq=False, repr=False)
 class ReleaseDraft:
     """A line of ``*RELEASE``: the end (0 or -1) of beams that carries no moment."""
 
     row: Row
     scope: Scope
     end: int
-
-
-@dataclass(eq=False, repr=False)
-class MassScalingDraft:
-    """One ``*FIXED MASS SCALING``: a factor of the mass, or an increment that is to be stable."""
-
-    card: Card
-    elset: str
-    factor: float
-    increment: float
-    kind: str
-    #: Step that it stands in, from 1.
-    step: int
 
 
 @dataclass(eq=False, repr=False)

@@ -212,7 +212,7 @@ _TABLE: dict[str, Keyword] = {
     "GLOBAL DAMPING": anywhere("dynamic.global_damping", "ALPHA BETA", "FIELD"),
     "MASS": of_model("attachments.mass", "ELSET"),
     "ROTARY INERTIA": of_model("attachments.rotary_inertia", "ELSET"),
-    "NONSTRUCTURAL MASS": of_model("material.nonstructural_mass", "ELSET UNITS DISTRIBUTION"),
+    "NONSTRUCTURAL MASS": of_model("nonstructural.nonstructural_mass", "ELSET UNITS DISTRIBUTION"),
     "DASHPOT": of_model("attachments.dashpot", "ELSET NONLINEAR", "RTOL REGULARIZE"),
     "CONNECTOR SECTION": of_model("connectors.connector_section", "ELSET BEHAVIOR", "CONTROLS"),
     "CONNECTOR BEHAVIOR": of_model(

@@ -8,12 +8,12 @@ to slave nodes here in every type of contact; open nodes have no row.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.arrays import Floats, Ints, distinct
-from corota.io.tables.dat_numbers import fortran, rows
+from corota.io.tables.dat_numbers import fortran, rows, statistics
 from corota.model.contact import ContactPair, RigidCurve, edges_or_nodes, joint_thickness
 from corota.model.sections import thickness_at
 
@@ -79,26 +79,15 @@ def _statistics(model: Model, pair: ContactPair, frame: Frame, name: str) -> str
     if minus is not None:
         force = force - _resultant(frame, pair, minus)
     area, center, normal = _closed_part(model, pair, frame)
-    moment = force[2] - (center[0] * force[1] - center[1] * force[0])
-    along = float(force[:2] @ normal)
-    across = math.hypot(*(force[:2] - along * normal))
-
-    def line(*values: Any) -> str:
-        return "    " + " ".join(f"{float(v) + 0.0:13.6E}" for v in values) + "\n"
-
     master = pair.master if isinstance(pair.master, str) else getattr(pair.master, "name", "")
     slave = pair.slave if isinstance(pair.slave, str) else pair.name
-    return (
-        f"\n statistics for slave set {slave.upper()}, master set {str(master).upper()} and time "
-        f"{fortran(frame.time, 7):>14}\n\n"
-        "   total surface force (fx,fy,fz) and moment about the origin (mx,my,mz)\n\n"
-        + line(force[0], force[1], 0.0, 0.0, 0.0, force[2])
-        + "\n   center of gravity and mean normal\n\n"
-        + line(*center, 0.0, *normal, 0.0)
-        + "\n   moment about the center of gravity(mx,my,mz)\n\n"
-        + line(0.0, 0.0, moment)
-        + "\n   area,  normal force (+ = tension) and shear force (size)\n\n"
-        + line(area, along, across)
+    return statistics(
+        f"slave set {slave.upper()}, master set {str(master).upper()}",
+        frame.time,
+        " ",
+        force,
+        (area, center, normal),
+        "area,  normal force (+ = tension) and shear force (size)",
     )
 
 

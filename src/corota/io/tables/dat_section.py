@@ -14,7 +14,7 @@ import numpy as np
 
 from corota.arrays import Floats, Ints, distinct
 from corota.errors import UnsupportedError
-from corota.io.tables.dat_numbers import fortran
+from corota.io.tables.dat_numbers import statistics
 from corota.model.sections import thickness_at
 
 if TYPE_CHECKING:
@@ -45,24 +45,14 @@ def section_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
     x = model.mesh.points + (0.0 if linear else frame.U)
     force, moment = _resultant(model, frame, edges, x)
     area, center, normal = _geometry(model, edges, x)
-    about_center = moment - (center[0] * force[1] - center[1] * force[0])
-    along = float(force @ normal)
-    across = math.hypot(*(force - along * normal))
-
-    def line(*values: float) -> str:
-        return "    " + " ".join(f"{float(v) + 0.0:13.6E}" for v in values) + "\n"
-
-    yield (
-        f"\n statistics for surface set {output.where.upper()} and time "
-        f"{fortran(frame.time, 7):>14}\n\n"
-        "   total surface force (fx,fy,fz) and moment about the origin(mx,my,mz)\n\n"
-        + line(force[0], force[1], 0.0, 0.0, 0.0, moment)
-        + "\n   center of gravity and mean normal\n\n"
-        + line(*center, 0.0, *normal, 0.0)
-        + "\n   moment about the center of gravity(mx,my,mz)\n\n"
-        + line(0.0, 0.0, about_center)
-        + "\n   area, normal force (+ = tension), shear force (size), torque and bending moment "
-        "(size)\n\n" + line(area, along, across, 0.0, abs(about_center))
+    yield statistics(
+        f"surface set {output.where.upper()}",
+        frame.time,
+        "",
+        (*force, moment),
+        (area, center, normal),
+        "area, normal force (+ = tension), shear force (size), torque and bending moment (size)",
+        bends=True,
     )
 
 

@@ -7,14 +7,12 @@ appended raw data with 64-bit headers.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import contextlib
-import os
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.io.atomic_file import full, replace_text, sync
+from corota.io.atomic_file import replace_text, replaced, sync
 from corota.io.finite import check_frame
 from corota.io.vtk.frame_arrays import cell_data, point_data
 from corota.io.vtk.grid import Grid
@@ -89,29 +87,11 @@ def vtu_bytes(
     return head.encode() + b"".join(blobs) + b"\n</AppendedData>\n</VTKFile>\n"
 
 
-def replace_bytes(path: Path, data: bytes) -> None:
-    """Write a file at once: temporary name, then renaming.
-
-    Raises
-    ------
-    FileError
-        If writing fails.
-    """
-    hidden = path.with_name(f".{path.name}.next")
-    try:
-        hidden.write_bytes(data)
-        os.replace(hidden, path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            hidden.unlink(missing_ok=True)
-        raise full(error, path) from None
-
-
 def write_vtu(results: Results, path: Path) -> None:
     """Write the last frame as one ``.vtu`` file."""
-    replace_bytes(
-        path, vtu_bytes(results.model, results.frame(), results.averaging, results.sections())
-    )
+    data = vtu_bytes(results.model, results.frame(), results.averaging, results.sections())
+    with replaced(path) as hidden:
+        hidden.write_bytes(data)
 
 
 class PvdWriter:
@@ -159,7 +139,8 @@ class PvdWriter:
             If writing fails.
         """
         piece = self.path.with_name(f"{self.path.stem}_{len(self._entries):04d}.vtu")
-        replace_bytes(piece, vtu_bytes(self.model, frame, self._averaging, self._sections))
+        with replaced(piece) as hidden:
+            hidden.write_bytes(vtu_bytes(self.model, frame, self._averaging, self._sections))
         self._entries.append(f'<DataSet timestep="{frame.time!r}" file="{escape(piece.name)}"/>\n')
         body = "".join(self._entries)
         replace_text(

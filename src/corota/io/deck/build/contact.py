@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
@@ -11,8 +12,7 @@ from corota.errors import InputError
 from corota.io.deck import numerals
 from corota.io.deck.build.general_contact import add_general
 from corota.io.deck.build.mesh import View, placed, views_in
-from corota.io.deck.build.ties import single_node
-from corota.io.deck.card import Card, key, nearest
+from corota.io.deck.card import Card, Refused, key, nearest
 from corota.io.deck.cards.contact import interaction_of
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
 from corota.model.steps import Buckle, Frequency, Visco
@@ -33,7 +33,8 @@ def build_contacts(targets: Targets) -> None:
     add_general(deck, targets.model, targets.sets)
     for pair in deck.pairs:
         try:
-            builder.add(pair)
+            with suppress(Refused):
+                builder.add(pair)
         except InputError as error:
             deck.error(pair.row.card, pair.row.where, error.message, text=pair.row.text)
     builder.unused()
@@ -52,26 +53,21 @@ class _Builder:
     def add(self, pair: PairDraft) -> None:
         """Build one pair; errors are recorded in the deck."""
         interaction = None if pair.tied else interaction_of(self.deck, pair)
-        slave = self._surface(pair, 0)
-        itself = key(pair.slave) == key(pair.master)
-        master = slave if itself else self._surface(pair, 1)
-        if slave is None or master is None or (interaction is None and not pair.tied):
+        itself, sides = key(pair.slave) == key(pair.master), []
+        for index in (0,) if itself else (0, 1):
+            with suppress(Refused):
+                sides.append(self._surface(pair, index))
+        if len(sides) < 2 - itself or (interaction is None and not pair.tied):
             return
+        slave, master = sides[0], sides[-1]
         if isinstance(slave, RigidCurve):
-            pair.row.error(
-                0,
-                f"{pair.slave} is a rigid profile and cannot be the slave",
-                "name the deformable surface first, the rigid one second",
-            )
-            return
+            text = f"{pair.slave} is a rigid profile and cannot be the slave"
+            pair.row.refuse(0, text, "name the deformable surface first, the rigid one second")
         name = pair.name or f"{pair.slave}-{pair.master}"
-        tied = pair.tied or (interaction is not None and interaction.law == "TIED")
-        if tied:
+        if pair.tied or (interaction is not None and interaction.law == "TIED"):
             if isinstance(master, RigidCurve):
-                pair.row.error(
-                    1, "nothing can be tied to a rigid profile", "use *RIGID BODY, NSET="
-                )
-                return
+                text = "nothing can be tied to a rigid profile"
+                pair.row.refuse(1, text, "use *RIGID BODY, NSET=")
             self.model.ties.append(Tie(slave, master, pair.adjust, name, pair.row.where))
             return
         assert interaction is not None
@@ -116,12 +112,10 @@ class _Builder:
         view = self._view(pair.row.card)
         name = self.sets.mesh_name(self.model.mesh.node_sets, view, pair.adjust_set)
         if not name:
-            pair.row.card.error(
-                f"no node set named {numerals.shown(pair.adjust_set)}",
-                "ADJUST",
-                hint=nearest(pair.adjust_set, self.model.mesh.node_sets)
-                or "or give the distance up to which gaps are closed without strain",
-            )
+            hint = nearest(pair.adjust_set, self.model.mesh.node_sets)
+            hint = hint or "or give the distance up to which gaps are closed without strain"
+            text = f"no node set named {numerals.shown(pair.adjust_set)}"
+            pair.row.card.error(text, "ADJUST", hint)
         return name or None
 
     def _law(self, draft: InteractionDraft) -> PressureLaw | None:
@@ -149,16 +143,16 @@ class _Builder:
             draft.pressure.clear()  # said once
             return None
 
-    def _surface(self, pair: PairDraft, index: int) -> str | Ints | RigidCurve | None:
-        """A surface of a pair: name of edges, edges, or a rigid curve; ``None`` after an error."""
+    def _surface(self, pair: PairDraft, index: int) -> str | Ints | RigidCurve:
+        """A surface of a pair: name of edges, edges, or a rigid curve."""
         name = (pair.slave, pair.master)[index]
         full = self._full(pair.row.card, name)
         found = self.sets.surfaces.get(full)
         index = min(index, len(pair.row) - 1)
         if found is None:
             known = [view.prefix + s.name for view, s in self.sets.surfaces.values()]
-            pair.row.error(index, f"no surface named {numerals.shown(name)}", nearest(name, known))
-            return None
+            hint = nearest(name, known)
+            pair.row.refuse(index, f"no surface named {numerals.shown(name)}", hint)
         view, surface = found
         if key(surface.card.value("TYPE")) == "SEGMENTS":
             return self._curve(full, surface)
@@ -177,13 +171,10 @@ class _Builder:
         else:
             edges, what = self.model.mesh.edge_sets[full], "it has no edges"
         if not len(edges):
-            if not self.deck.n_errors:
-                pair.row.error(
-                    index,
-                    f"surface {name} cannot be used for contact: {what}",
-                    "contact acts on edges: give the surface by elements and faces",
-                )
-            return None
+            if self.deck.n_errors:
+                raise Refused
+            hint = "contact acts on edges: give the surface by elements and faces"
+            pair.row.refuse(index, f"surface {name} cannot be used for contact: {what}", hint)
         return edges if surface.nodes else full
 
     def _view(self, card: Card) -> View:
@@ -195,9 +186,9 @@ class _Builder:
         view = self._view(card)
         return self.sets.full_name(self.sets.surfaces, view, name)
 
-    def _curve(self, name: str, surface: Surface) -> RigidCurve | None:
+    def _curve(self, name: str, surface: Surface) -> RigidCurve:
         if surface.profile is None:
-            return None  # its errors are reported already
+            raise Refused  # its errors are reported already
         if name in self.curves:
             return self.curves[name]
         view = self.sets.surfaces[name][0]
@@ -207,9 +198,7 @@ class _Builder:
         reference: int | None = None
         card, draft = self.carriers.get(name, (surface.card, None))
         if draft is not None:
-            reference = single_node(self.targets, draft)
-            if reference is None:
-                return None
+            reference = self.targets.one_node(draft)
             self.rotating[reference] = True
         else:
             missing = "REF NODE" if name in self.carriers else "*RIGID BODY"
@@ -221,7 +210,7 @@ class _Builder:
 
     def _rigid_sides(
         self, name: str, view: View, surface: Surface, sides: list[tuple[SurfaceRow, Ints]]
-    ) -> RigidCurve | None:
+    ) -> RigidCurve:
         """Sides of a rigid body (R2D2) as a curve, carried by its reference node."""
         if name in self.curves:
             return self.curves[name]
@@ -235,21 +224,16 @@ class _Builder:
                     "direction from the first to the second node) or SNEG",
                     text=row.text,
                 )
-                return None
+                raise Refused
             lines += own.tolist()
             ends = np.array([self.sets.line_nodes[i][:2] for i in own])
             ways.append(ends if row.face == "SPOS" else ends[:, ::-1])
         chain = _chain(np.concatenate(ways))
         if chain is None:
-            surface.card.error(
-                f"the sides of {surface.name} do not follow each other in one line",
-                hint="give each chain of sides its own surface, all in one direction",
-            )
-            return None
-        reference = self._body_of(set(lines))
-        if reference is None:
-            surface.card.error(f"the sides of {surface.name} belong to no *RIGID BODY, ELSET=")
-            return None
+            text = f"the sides of {surface.name} do not follow each other in one line"
+            hint = "give each chain of sides its own surface, all in one direction"
+            surface.card.refuse(text, hint=hint)
+        reference = self._body_of(surface, set(lines))
         points = self.model.mesh.points[chain]
         rows = np.zeros((len(chain) - 1, 7))
         rows[:, :2], rows[:, 2:4] = points[:-1], points[1:]
@@ -258,8 +242,8 @@ class _Builder:
         curve.name = view.prefix + surface.name
         return curve
 
-    def _body_of(self, lines: set[int]) -> int | None:
-        """Reference node of the rigid body that holds these lines."""
+    def _body_of(self, surface: Surface, lines: set[int]) -> int:
+        """Reference node of the rigid body that holds the lines of a surface."""
         for tie in self.deck.ties:
             if tie.kind != "kinematic" or not tie.elset:
                 continue
@@ -267,20 +251,16 @@ class _Builder:
                 full = self.sets.full_name(self.sets.elsets, view, tie.elset)
                 found = self.sets.element_set(full) if full else None
                 if found is not None and lines <= set(found.lines.tolist()):
-                    return single_node(self.targets, tie.terms[0])
-        return None
+                    return self.targets.one_node(tie.terms[0])
+        surface.card.refuse(f"the sides of {surface.name} belong to no *RIGID BODY, ELSET=")
 
     def unused(self) -> None:
         """Report rigid bodies of undefined profiles, and unused definitions."""
         for name, (card, _) in self.carriers.items():
             if name not in self.sets.surfaces:
                 shown = card.value("ANALYTICALSURFACE")
-                names = [s.name for _, s in self.sets.surfaces.values()]
-                card.error(
-                    f"no surface named {numerals.shown(shown)}",
-                    "ANALYTICALSURFACE",
-                    hint=nearest(shown, names),
-                )
+                hint = nearest(shown, [s.name for _, s in self.sets.surfaces.values()])
+                card.error(f"no surface named {numerals.shown(shown)}", "ANALYTICALSURFACE", hint)
             elif key(self.sets.surfaces[name][1].card.value("TYPE")) != "SEGMENTS":
                 text = "the surface is not a rigid profile (TYPE=SEGMENTS); use NSET= or ELSET="
                 card.error(text, "ANALYTICALSURFACE")

@@ -33,7 +33,7 @@ build_contacts = lazy("corota.io.deck.build.contact:build_contacts")
 build_initial = lazy("corota.io.deck.cards.thermal:build_initial")
 build_tie = lazy("corota.io.deck.build.ties:build_tie")
 prepare_connectors = lazy("corota.io.deck.cards.connectors:prepare_connectors")
-pretension_builder = lazy("corota.io.deck.build.pretension:PretensionBuilder")
+pretension_builder = lazy("corota.io.deck.cards.pretension:PretensionBuilder")
 
 
 class ModelBuilder:

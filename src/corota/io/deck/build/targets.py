@@ -10,12 +10,12 @@ import numpy as np
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import MeshBuilder, View, view_of
 from corota.io.deck.build.sets import Elements, Sets
-from corota.io.deck.card import key, nearest
+from corota.io.deck.card import Refused, key, nearest
 from corota.io.deck.deck import Deck
 from corota.model.model import Model
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from corota.arrays import Floats, Ints
     from corota.io.deck.drafts import Draft, TieDraft
@@ -94,12 +94,8 @@ class Targets:
             return ""
         found = self.deck.amplitudes.get(key(draft.amplitude))
         if found is None:
-            names = [a.name for a in self.deck.amplitudes.values()]
-            draft.card.error(
-                f"no amplitude named {draft.amplitude!r}",
-                "AMPLITUDE",
-                hint=nearest(draft.amplitude, names),
-            )
+            hint = nearest(draft.amplitude, [a.name for a in self.deck.amplitudes.values()])
+            draft.card.error(f"no amplitude named {draft.amplitude!r}", "AMPLITUDE", hint)
             return None
         if key(draft.amplitude) in self.deck.absolute:
             if draft.kind not in ("fixed", "force", "pressure", "surface pressure"):
@@ -127,3 +123,30 @@ class Targets:
     def surface_name(self, table: Mapping[str, object], name: str) -> str:
         """Name in the mesh of a surface, empty where there is none."""
         return self.sets.mesh_name(table, self.at, name)
+
+    def indices(self, draft: Draft) -> Ints:
+        """Nodes that a draft names; as :meth:`nodes`.
+
+        Raises
+        ------
+        Refused
+            After an error.
+        """
+        found = self.nodes(draft)
+        if found is None:
+            raise Refused
+        return self.mesh.node_indices(found)
+
+    def all_indices(self, drafts: Sequence[Draft]) -> list[Ints]:
+        """Nodes of each of several drafts; as :meth:`indices`, after the errors of all."""
+        found = [nodes for draft in drafts if (nodes := self.nodes(draft)) is not None]
+        if len(found) < len(drafts):
+            raise Refused
+        return [self.mesh.node_indices(nodes) for nodes in found]
+
+    def one_node(self, draft: Draft) -> int:
+        """Index of the one node that a draft names; as :meth:`indices`."""
+        nodes = self.indices(draft)
+        if len(nodes) != 1:
+            draft.row.refuse(0, f"one node is expected; the set {draft.target} has {len(nodes)}")
+        return int(nodes[0])

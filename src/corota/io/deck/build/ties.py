@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from corota.errors import InputError
-from corota.io.deck.card import key, nearest
+from corota.io.deck.card import Refused, key, nearest
 from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
 
 if TYPE_CHECKING:
@@ -16,8 +17,7 @@ if TYPE_CHECKING:
 
     from corota.arrays import Floats, Ints
     from corota.io.deck.build.targets import Targets
-    from corota.io.deck.drafts import Draft, TieDraft
-    from corota.model.model import Model
+    from corota.io.deck.drafts import TieDraft
 
 
 def build_tie(targets: Targets, tie: TieDraft) -> None:
@@ -27,7 +27,8 @@ def build_tie(targets: Targets, tie: TieDraft) -> None:
         targets.deck.error(tie.card, tie.where, text)
         return
     try:
-        _build(targets, tie)
+        with suppress(Refused):
+            _build(targets, tie)
     except InputError as error:
         targets.deck.error(tie.card, tie.where, error.message)
 
@@ -46,22 +47,17 @@ def _build(targets: Targets, tie: TieDraft) -> None:
     if tie.members:
         _weighted(targets, tie)
         return
-    single = [single_node(targets, term) for term in tie.terms]
-    if None in single:
-        return
-    numbers = cast("list[int]", single)
-    reference = numbers[0]
+    reference = targets.one_node(tie.terms[0])
     weights: Floats | None = None
     chosen: str | Ints | None
     if tie.surface:
         chosen, weights = _surface(targets, tie)
-        if chosen is not None:
-            near = np.hypot(*(model.mesh.points[chosen] - model.mesh.points[reference]).T)
-            inside = near <= tie.radius * (1.0 + 1e-9)
-            if not inside.any():
-                raise InputError(f"no node of {tie.surface} is within the radius", tie.where)
-            chosen = chosen[inside]
-            weights = weights[inside] if weights is not None else None
+        near = np.hypot(*(model.mesh.points[chosen] - model.mesh.points[reference]).T)
+        inside = near <= tie.radius * (1.0 + 1e-9)
+        if not inside.any():
+            raise InputError(f"no node of {tie.surface} is within the radius", tie.where)
+        chosen = chosen[inside]
+        weights = weights[inside] if weights is not None else None
     elif tie.elset:
         chosen = targets.tied(tie)
     else:
@@ -85,25 +81,20 @@ def _equations(targets: Targets, tie: TieDraft) -> None:
     Sets with ``UNSORTED`` keep their order, and a single node is in all equations, as in Abaqus.
     """
     deck, model = targets.deck, targets.model
-    labels = model.mesh.node_labels
     columns: list[Ints] = []
     for term in tie.terms:
-        found = targets.nodes(term)
-        if found is None:
-            return
-        nodes = model.mesh.node_indices(found)
+        nodes = targets.indices(term)
         if key(term.target) not in deck.unsorted:
-            nodes = nodes[np.argsort(labels[nodes])]
+            nodes = nodes[np.argsort(model.mesh.node_labels[nodes])]
         columns.append(nodes)
     count = max(len(nodes) for nodes in columns)
     for term, nodes in zip(tie.terms, columns, strict=True):
         if len(nodes) not in (1, count):
-            term.row.error(
+            term.row.refuse(
                 0,
                 f"the sets of an equation have as many nodes or one; {term.target} has "
                 f"{len(nodes)}, another {count}",
             )
-            return
     for rows in zip(*(np.broadcast_to(nodes, count) for nodes in columns), strict=True):
         terms = [(int(n), t.index, t.value[0]) for n, t in zip(rows, tie.terms, strict=True)]
         model.constraints.append(Equation(terms, 0.0, tie.where))
@@ -114,20 +105,14 @@ def _weighted(targets: Targets, tie: TieDraft) -> None:
     deck, model = targets.deck, targets.model
     draft = deck.couplers.get(key(tie.elset))
     if draft is None:
-        tie.card.error(
-            f"no set named {tie.elset!r} of DCOUP2D or DCOUP3D elements",
-            "ELSET",
-            hint=nearest(tie.elset, deck.couplers),
-        )
-        return
-    reference = single_node(targets, draft)
-    found = [(targets.nodes(item), weight) for item, weight in tie.members]
-    if reference is None or any(nodes is None for nodes, _ in found):
-        return
+        text = f"no set named {tie.elset!r} of DCOUP2D or DCOUP3D elements"
+        tie.card.refuse(text, "ELSET", nearest(tie.elset, deck.couplers))
+    items = [draft, *(item for item, _ in tie.members)]
+    _, *members = targets.all_indices(items)
+    reference = targets.one_node(draft)
     share = np.zeros(model.mesh.n_nodes)
-    for nodes, weight in found:
-        assert nodes is not None
-        share[model.mesh.node_indices(nodes)] += weight
+    for nodes, (_, weight) in zip(members, tie.members, strict=True):
+        share[nodes] += weight
     chosen = np.flatnonzero(share)
     if deck.dialect == "calculix" and key(draft.card.value("TYPE")) == "DCOUP3D":
         deck.note(
@@ -135,8 +120,11 @@ def _weighted(targets: Targets, tie: TieDraft) -> None:
             "distance from the nodes gives no moment; *COUPLING with *DISTRIBUTING does"
         )
         # The first term of an equation is the dof that it determines: none that a support moves.
-        every = [*deck.supports, *(item for step in deck.steps for item in step.supports)]
-        moved = {item.index for item in every if _names(model, targets.nodes(item), reference)}
+        moved = set()
+        for item in [*deck.supports, *(item for step in deck.steps for item in step.supports)]:
+            held = targets.nodes(item)
+            if held is not None and reference in model.mesh.node_indices(held):
+                moved.add(item.index)
         part = -share[chosen] / share.sum()
         for dof in (0, 1):
             rows = [(int(n), dof, float(w)) for n, w in zip(chosen, part, strict=True)]
@@ -148,59 +136,39 @@ def _weighted(targets: Targets, tie: TieDraft) -> None:
     targets.rotating[reference] = True
 
 
-def _names(model: Model, nodes: str | Ints | None, node: int) -> bool:
-    """Whether a set or nodes hold a node."""
-    return nodes is not None and node in (model.mesh.node_indices(nodes))
-
-
 def _straight(targets: Targets, tie: TieDraft) -> None:
     """Nodes on the line through the first two."""
-    model = targets.model
-    found = [targets.nodes(term) for term in tie.terms]
-    if any(nodes is None for nodes in found):
-        return
-    parts = [model.mesh.node_indices(n) for n in found if n is not None]
-    nodes = np.concatenate([np.zeros(0, np.int64), *parts])
+    nodes = np.concatenate([np.zeros(0, np.int64), *targets.all_indices(tie.terms)])
     if len(nodes) < 3:
-        text = "at least three nodes are expected, beginning with the two of the line"
-        targets.deck.error(tie.card, tie.where, text)
-        return
+        raise InputError("at least three nodes are expected, beginning with the two of the line")
     ends = int(nodes[0]), int(nodes[1])
-    model.constraints.append(StraightLine(nodes[2:], *ends, tie.where))
+    targets.model.constraints.append(StraightLine(nodes[2:], *ends, tie.where))
 
 
 def _between(targets: Targets, tie: TieDraft) -> None:
     """Dofs of a node by linear interpolation between two others, from its place between them."""
     model = targets.model
-    found = [single_node(targets, term) for term in tie.terms]
-    if None in found:
-        return
+    targets.all_indices(tie.terms)
+    found = [targets.one_node(term) for term in tie.terms]
     if len(found) != 3:
         raise InputError(f"three nodes are expected, not {len(found)}", tie.where)
-    node, first, second = cast("list[int]", found)
-    x = model.mesh.points[[node, first, second]]
+    node, first, second = found
+    x = model.mesh.points[found]
     way = x[2] - x[1]
     length = float(way @ way)
     if length == 0.0:
         raise InputError("the two nodes to interpolate between are at one place", tie.where)
     share = float((x[0] - x[1]) @ way) / length
-    turns = targets.rotating[[node, first, second]].all()
-    for dof in range(3 if turns else 2):
+    for dof in range(3 if targets.rotating[found].all() else 2):
         terms = [(node, dof, 1.0), (first, dof, share - 1.0), (second, dof, -share)]
         model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
 def _same(targets: Targets, tie: TieDraft) -> None:
     """Equal displacements, and rotations where both have one, of pairs of nodes."""
-    model, rotating = targets.model, targets.rotating
+    rotating = targets.rotating
     assert tie.target is not None
-    pairs = []
-    for draft in (tie.target, tie.terms[0]):
-        found = targets.nodes(draft)
-        if found is None:
-            return
-        pairs.append(model.mesh.node_indices(found))
-    first, second = pairs
+    first, second = (targets.indices(draft) for draft in (tie.target, tie.terms[0]))
     if len(second) == 1:
         second = np.broadcast_to(second, len(first))
     if len(first) != len(second):
@@ -209,23 +177,10 @@ def _same(targets: Targets, tie: TieDraft) -> None:
         for dof in tie.dofs:
             if a != b and (dof < 2 or (rotating[a] and rotating[b])):
                 terms = [(a, dof, 1.0), (b, dof, -1.0)]
-                model.constraints.append(Equation(terms, 0.0, tie.where))
+                targets.model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
-def single_node(targets: Targets, draft: Draft) -> int | None:
-    """Index of the one node that a draft names, by number or set; ``None`` after an error."""
-    found = targets.nodes(draft)
-    if found is None:
-        return None
-    nodes = targets.mesh.node_indices(found)
-    if len(nodes) != 1:
-        text = f"one node is expected; the set {draft.target} has {len(nodes)}"
-        draft.row.error(0, text)
-        return None
-    return int(nodes[0])
-
-
-def _surface(targets: Targets, tie: TieDraft) -> tuple[Ints | None, Floats | None]:
+def _surface(targets: Targets, tie: TieDraft) -> tuple[Ints, Floats | None]:
     """Nodes of a surface, and their shares of its length."""
     mesh = targets.mesh
     name = targets.surface_name(mesh.edge_sets, tie.surface)
@@ -240,12 +195,10 @@ def _surface(targets: Targets, tie: TieDraft) -> tuple[Ints | None, Floats | Non
         nodes = np.flatnonzero(share)
         return nodes, share[nodes]
     name = targets.surface_name(mesh.node_sets, tie.surface)
-    if name:
-        return np.asarray(mesh.node_sets[name], np.int64), None
-    hint = nearest(tie.surface, mesh.edge_sets)
-    where = tie.card.at("SURFACE")
-    targets.deck.error(tie.card, where, f"no surface named {tie.surface}", hint=hint)
-    return None, None
+    if not name:
+        hint = nearest(tie.surface, mesh.edge_sets)
+        tie.card.refuse(f"no surface named {tie.surface}", "SURFACE", hint)
+    return np.asarray(mesh.node_sets[name], np.int64), None
 
 
 #: Constraints that are not couplings, by kind.

@@ -25,7 +25,7 @@ def ngen(deck: Deck, card: Card) -> None:
     for row in card.rows():
         first, last = row.integers(("the first node", "the last node"))
         by = row.whole(2, "the increment", 1)
-        start, end = (_point(deck, row, i, label) for i, label in enumerate((first, last)))
+        start, end = both(*(_point(deck, row, i, label) for i, label in enumerate((first, last))))
         by = abs(by) if last >= first else -abs(by)
         if by == 0 or (last - first) % by or abs((last - first) // by) > MAX_GENERATED:
             row.refuse(2, f"{last} is not reached from {first} in steps of {by}")
@@ -60,7 +60,7 @@ def _on_arc(first: Floats, last: Floats, center: Floats, share: Floats, normal: 
 
 def _extra_point(deck: Deck, row: Row) -> Floats:
     if row.get(3):
-        return _point(deck, row, 3, row.whole(3, "the node of the curve"))
+        return both(_point(deck, row, 3, row.whole(3, "the node of the curve")), row)[0]
     return np.array(row.reals([f"{x} of the curve's point" for x in "xyz"], 0.0, 4))
 
 
@@ -200,13 +200,14 @@ def _reals(row: Row) -> list[float]:
     return row.reals(["the number"] * len(row), 0.0)
 
 
-def _point(deck: Deck, row: Row, index: int, label: int) -> Floats:
-    """Coordinates (3,) of a node defined before."""
+def _point(deck: Deck, row: Row, index: int, label: int) -> Floats | None:
+    """Coordinates (3,) of a node defined before; ``None`` after an error."""
     for block in reversed(deck.scope.nodes):
         at = np.flatnonzero(block.labels == label)
         if len(at):
             return np.asarray(block.points[at[0]])
-    row.refuse(index, f"node {label} is not defined before this card")
+    row.error(index, f"node {label} is not defined before this card")
+    return None
 
 
 def _points(deck: Deck, row: Row, labels: Ints) -> Floats:

@@ -11,15 +11,12 @@ from corota.io.deck import numerals
 from corota.io.deck.card import Card, Refused, Row, both, key
 from corota.io.deck.cards.distribution import plane_angle
 from corota.io.deck.cards.step import turns_nlgeom_on
-from corota.io.deck.drafts import Draft, MaterialDraft, NonstructuralDraft, SectionDraft
+from corota.io.deck.drafts import Draft, MaterialDraft, SectionDraft
 from corota.io.deck.laws import LAWS, DeckLaw
-from corota.lazy import lazy
 from corota.model.local_strain import ALIASES, LOCAL_STRAINS, local_strain
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
-
-add_nonstructural = lazy("corota.io.deck.build.nonstructural:add_nonstructural")
 
 #: Values of ``TYPE=`` of ``*ELASTIC``, and their laws.
 ELASTIC_TYPES = {
@@ -35,8 +32,6 @@ ELASTIC_TYPES = {
 #: Poisson's ratio that stands for the constant volume of hybrid elements of Abaqus: a bulk modulus
 #: of 10^4 times the shear modulus.
 HYBRID_RATIO = 29998.0 / 60002.0
-#: Values of ``UNITS=`` of ``*NONSTRUCTURAL MASS``.
-NONSTRUCTURAL = ("TOTALMASS", "MASSPERVOLUME", "MASSPERAREA", "MASSPERLENGTH")
 
 
 def material(deck: Deck, card: Card) -> None:
@@ -206,23 +201,6 @@ def nodal_thickness(deck: Deck, card: Card) -> None:
             value = tuple(row.positive(("the thickness",), 1))
             if row.get(0):
                 deck.thicknesses.append(Draft("thickness", row, row.get(0), value))
-
-
-def nonstructural_mass(deck: Deck, card: Card) -> None:
-    """``*NONSTRUCTURAL MASS, ELSET=, UNITS=[, DISTRIBUTION=]``: the mass, or its density."""
-    elset = card.required("ELSET")
-    units = card.required("UNITS") and card.choice("UNITS", NONSTRUCTURAL, "")
-    kinds = ("MASSPROPORTIONAL", "VOLUMEPROPORTIONAL")
-    share = card.choice("DISTRIBUTION", kinds, kinds[0])
-    row = card.one_line("the mass", counted=True)
-    row.at_most(1)
-    value = row.number(0, "the mass")
-    if not elset or not units:
-        return
-    if value < 0.0:
-        row.refuse(0, f"a mass must be >= 0, not {value:g}")
-    draft = NonstructuralDraft(row, elset, value, units, share == kinds[1])
-    deck.later("sections", add_nonstructural, draft)
 
 
 def shell_section(deck: Deck, card: Card) -> None:

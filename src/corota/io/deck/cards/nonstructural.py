@@ -1,10 +1,10 @@
-"""Masses without stiffness in the elements of a deck: added to the density of their material."""
+"""``*NONSTRUCTURAL MASS``: added to the density of the material of its elements."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,12 +18,46 @@ from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
-    from corota.io.deck.drafts import NonstructuralDraft
+    from corota.io.deck.card import Card, Row
+    from corota.io.deck.deck import Deck
     from corota.mesh.data import Mesh
     from corota.model.sections import Section
 
 #: Elements without a mass of their own.
 _MASSLESS = "SPRING"
+#: Values of ``UNITS=`` of ``*NONSTRUCTURAL MASS``.
+NONSTRUCTURAL = ("TOTALMASS", "MASSPERVOLUME", "MASSPERAREA", "MASSPERLENGTH")
+
+
+@dataclass(eq=False, repr=False)
+class NonstructuralDraft:
+    """One ``*NONSTRUCTURAL MASS``: a mass in the elements of a set, without stiffness.
+
+    ``units`` says what the value is per; a total is shared by mass, or ``by_volume``.
+    """
+
+    row: Row
+    elset: str
+    value: float
+    units: str
+    by_volume: bool = False
+
+
+def nonstructural_mass(deck: Deck, card: Card) -> None:
+    """``*NONSTRUCTURAL MASS, ELSET=, UNITS=[, DISTRIBUTION=]``: the mass, or its density."""
+    elset = card.required("ELSET")
+    units = card.required("UNITS") and card.choice("UNITS", NONSTRUCTURAL, "")
+    kinds = ("MASSPROPORTIONAL", "VOLUMEPROPORTIONAL")
+    share = card.choice("DISTRIBUTION", kinds, kinds[0])
+    row = card.one_line("the mass", counted=True)
+    row.at_most(1)
+    value = row.number(0, "the mass")
+    if not elset or not units:
+        return
+    if value < 0.0:
+        row.refuse(0, f"a mass must be >= 0, not {value:g}")
+    draft = NonstructuralDraft(row, elset, value, units, share == kinds[1])
+    deck.later("sections", add_nonstructural, draft)
 
 
 def add_nonstructural(targets: Targets, drafts: list[NonstructuralDraft]) -> None:
