@@ -49,3 +49,35 @@ def distinct(values: ArrayLike) -> NDArray[Any]:
     first = np.ones(len(found), dtype=bool)
     np.not_equal(found[1:], found[:-1], out=first[1:])
     return found[first]
+
+
+class Lookup:
+    """Indices of labels.
+
+    Parameters
+    ----------
+    labels : ndarray of int, shape (n,)
+        Of labels that occur more than once the first one counts.
+    indices : ndarray of int, shape (n,), optional
+        0 to n - 1 by default.
+    """
+
+    def __init__(self, labels: Ints, indices: Ints | None = None) -> None:
+        indices = np.arange(len(labels)) if indices is None else indices
+        if (np.diff(labels) < 0).any():
+            order = np.argsort(labels, kind="stable")
+            labels, indices = labels[order], indices[order]
+        self._labels, self._indices = labels, indices
+        # Labels without gaps are looked up by their distance from the first.
+        self._dense = len(labels) > 0 and bool((np.diff(labels) == 1).all())
+
+    def __call__(self, labels: Ints) -> Ints:
+        """Index of each label, -1 where there is none."""
+        if len(self._labels) == 0:
+            return np.full(np.shape(labels), -1, dtype=np.int64)
+        if self._dense:
+            at = labels - self._labels[0]
+            inside = (at >= 0) & (at < len(self._labels))
+            return np.where(inside, self._indices[np.where(inside, at, 0)], -1)
+        at = np.minimum(np.searchsorted(self._labels, labels), len(self._labels) - 1)
+        return np.where(self._labels[at] == labels, self._indices[at], -1)

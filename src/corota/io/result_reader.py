@@ -6,26 +6,25 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from corota.errors import FileError, InputError
+from corota.errors import FileError
 from corota.io.contacts import contacts_of_results
 from corota.io.description import description_of_results
 from corota.io.regular_file import parse_json
-from corota.io.vtk.grid import VTK_TYPES
+from corota.io.vtk.frame_arrays import NODAL_ARRAYS, nodal_values
+from corota.io.vtk.grid import grid_cells
 from corota.io.vtk.parts import whole
-from corota.mesh import Cells, Mesh
-from corota.mesh.kinds import N_NODES
+from corota.mesh import Mesh
 from corota.model.model import Model
 from corota.model.units import Units
 from corota.results.extremes import places_of
 from corota.results.results import Frame, PointFields, Results
 from corota.results.scalars import OF_FRAMES, where_missing
-from corota.results.table import CONTACT, HARMONIC, TABLE
+from corota.results.table import CONTACT
 from corota.results.variables import FORCES, STORED
 
 if TYPE_CHECKING:
@@ -37,12 +36,8 @@ if TYPE_CHECKING:
     from corota.arrays import Bools, Floats, Ints
 
 
-_KINDS = {number: kind for kind, number in VTK_TYPES.items()}
-#: Arrays at nodes that a frame holds in its own attributes.
-_NODAL_ARRAYS = {row.stored for row in TABLE.values() if row.frame}
 #: Arrays of a block of point values that are no variables.
 AT_POINTS = ("cells", "shape functions", "reference volume", "position", FORCES)
-#: Scalars of a frame that are its own attributes.
 
 
 def read_results(path: str | PathLike[str]) -> Results:
@@ -295,25 +290,11 @@ class FileFrames(Sequence[Frame]):
         group = self._file["corota/frames"]
         found = {name: float(group[name][number]) for name in group}
         scalars = {name: value for name, value in found.items() if not np.isnan(value)}
-        absent = frozenset(
-            attribute
-            for attribute, name in (("RF", "reaction"), ("F", "external force"))
-            if name not in self._file["VTKHDF/PointData"]
-        )
-        moving: dict[str, Any] = {}
-        for attribute, name in (("V", "velocity"), ("A", "acceleration")):
-            if name in self._file["VTKHDF/PointData"]:
-                at = self.at_points(name, number)
-                at[:, 2] = self.at_points(f"angular {name}", number)
-                moving[attribute] = at
-        if "temperature" in self._file["VTKHDF/PointData"]:
-            moving["T"] = self.at_points("temperature", number)
-        for attribute, names in (("C", CONTACT), ("H", HARMONIC)):
-            if any(name in self._file["VTKHDF/PointData"] for name in names):
-                columns = np.column_stack([self._or_zero(name, number) for name in names])
-                # Frames of other procedures have zeros in place of amplitudes.
-                if attribute == "C" or columns.any():
-                    moving[attribute] = columns
+        names = self.point_names()
+        values = nodal_values(Arrays(names, lambda name: self.at_points(name, number)), self._nodes)
+        # Names of arrays have no slash.
+        pairs = values.pop("pairs")
+        values["pairs"] = {pair.replace("|", "/"): value for pair, value in pairs.items()}
         none = self._without(number)
         fields = [self._fields(block, number, none) for block in range(len(self._blocks))]
         return Frame(
@@ -322,15 +303,13 @@ class FileFrames(Sequence[Frame]):
             scalars["time"],
             scalars["step time"],
             scalars["load factor"],
-            self.at_points("displacement", number)[:, :2],
-            self.at_points("rotation", number),
-            self._force("reaction", "reaction moment", number),
-            self._force("external force", "external moment", number),
+            values.pop("U"),
+            values.pop("UR"),
+            values.pop("RF"),
+            values.pop("F"),
             fields,
             {k: v for k, v in scalars.items() if k not in OF_FRAMES},
-            **moving,
-            pairs=self._pairs(number),
-            absent=absent,
+            **values,
             **({} if fields else self._averages(number, none)),
         )
 
@@ -345,28 +324,6 @@ class FileFrames(Sequence[Frame]):
                 found.add(name)
         return found
 
-    def _or_zero(self, name: str, number: int) -> Floats:
-        there = name in self._file["VTKHDF/PointData"]
-        return self.at_points(name, number) if there else np.zeros(self._nodes)
-
-    def _force(self, name: str, moment: str, number: int) -> Floats:
-        """Force and moment at the nodes, not numbers where the file has none."""
-        if name not in self._file["VTKHDF/PointData"]:
-            return np.full((self._nodes, 3), np.nan)
-        force = self.at_points(name, number)
-        return np.column_stack([force[:, :2], self._or_zero(moment, number)])
-
-    def _pairs(self, number: int) -> dict[str, Floats]:
-        """Contact of each pair, where pairs share nodes."""
-        head = f"{CONTACT[0]}: "
-        names = [n.removeprefix(head) for n in self._file["VTKHDF/PointData"] if n.startswith(head)]
-        return {
-            pair.replace("|", "/"): np.column_stack(
-                [self._or_zero(f"{column}: {pair}", number) for column in CONTACT]
-            )
-            for pair in names
-        }
-
     def _averages(self, number: int, none: set[str]) -> dict[str, Any]:
         """What the file holds of values whose points it does not hold; read when requested."""
         of_pairs = tuple(f"{column}: " for column in CONTACT)
@@ -374,7 +331,7 @@ class FileFrames(Sequence[Frame]):
         at_nodes = [
             name
             for name in self._file["VTKHDF/PointData"]
-            if name not in _NODAL_ARRAYS | absent and not name.startswith(of_pairs)
+            if name not in NODAL_ARRAYS | absent and not name.startswith(of_pairs)
         ]
         still = {"section", "element label", *(f"cell {name}" for name in absent)}
         of_cells = [name for name in self._file["VTKHDF/CellData"] if name not in still]
@@ -516,16 +473,7 @@ def _mesh(file: Any) -> Mesh:
         counts = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
         sizes = np.column_stack([root[name][:] for name in counts])
         chain, offsets = whole(chain, offsets, sizes, own["parts/nodes"][:], own["parts/cells"][:])
-    cells: list[Cells] = []
-    cuts = [0, *(np.flatnonzero(np.diff(types)) + 1).tolist(), len(types)]
-    for first, end in pairwise(cuts):
-        if first == end:
-            continue
-        kind = _KINDS.get(int(types[first]))
-        if kind is None:
-            raise InputError(f"cell type {types[first]} is not one of Corota's")
-        nodes = chain[offsets[first] : offsets[end]].reshape(-1, N_NODES[kind])
-        cells.append(Cells(kind, nodes, labels[first:end]))
+    cells = grid_cells(types, chain, offsets, labels)
     points = root["Points"][:][rows.nodes, :2]
     _whole(bool(np.isfinite(points).all()), "coordinates that are not numbers")
     for block in cells:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from corota.arrays import Floats, Ints
+from corota.arrays import Floats, Ints, Lookup
 from corota.errors import FileError, UnsupportedError
 from corota.io.frd.layout import NAMES, NODES
 from corota.io.regular_file import read_bytes
@@ -179,13 +179,13 @@ class _Reader:
                 f"{self.source.path}: not a planar mesh; CalculiX writes one with OUTPUT=2D on "
                 "*NODE FILE"
             )
-        order = np.argsort(labels)
+        rows = Lookup(labels)
 
         def index(nodes: Any) -> Ints:
-            at = order[np.minimum(np.searchsorted(labels[order], nodes), len(labels) - 1)]
-            if not np.array_equal(labels[at], nodes):
+            at = rows(nodes)
+            if (at < 0).any():
                 raise ValueError("elements refer to missing nodes")
-            return np.asarray(at, dtype=np.int64)
+            return at
 
         cells = []
         for kind in dict.fromkeys(k for _, k, _ in elements):

@@ -348,13 +348,21 @@ class Reader:
             raise self.fault(f"$Nodes: the node number {labels[0]} is not positive", body)
         return self._end
 
-    def _nodes_parametric(self, body: int) -> tuple[list[Ints], list[Floats]]:
-        """Nodes of MSH 2 with their coordinates on curves and surfaces, which are not used."""
+    def _counted(self, body: int) -> tuple[int, Stream]:
+        """Number of entries of a section of MSH 2, and its numbers behind it."""
         if self.binary:
             count, body = self._count_line(body)
+            return count, Stream(self, body, self._section_name)
         stream = Stream(self, body, self._section_name)
-        if not self.binary:
-            count = int(stream.ints(1)[0])
+        return int(stream.ints(1)[0]), stream
+
+    def _nodes_2(self, body: int) -> tuple[list[Ints], list[Floats]]:
+        count, stream = self._counted(body)
+        if self._section_name == "Nodes":
+            own, places = stream.numbered(count, 3)
+            self._end = stream.finish()
+            return [own], [places]
+        # Coordinates on curves and surfaces are not used.
         tags, points = [], []
         for _ in range(count):
             tags.append(int(stream.ints(1)[0]))
@@ -364,25 +372,6 @@ class Reader:
                 stream.reals(dimension)
         self._end = stream.finish()
         return [np.array(tags, np.int64)], [np.array(points).reshape(-1, 3)]
-
-    def _nodes_2(self, body: int) -> tuple[list[Ints], list[Floats]]:
-        if self._section_name == "ParametricNodes":
-            return self._nodes_parametric(body)
-        if self.binary:
-            count, body = self._count_line(body)
-            stream = Stream(self, body, "Nodes")
-            rows = stream.table(count, [("tag", "i4", 1), ("x", "f8", 3)])
-            points = rows["x"].astype(np.float64)
-            _check_finite(self, points.ravel(), body)
-            self._end = stream.finish()
-            return [rows["tag"][:, 0].astype(np.int64)], [points]
-        stream = Stream(self, body, "Nodes")
-        count = int(stream.ints(1)[0])
-        table = stream.reals(4 * count).reshape(-1, 4)
-        if (table[:, 0] != np.floor(table[:, 0])).any():
-            raise self.fault("$Nodes: a node number is not whole", body)
-        self._end = stream.finish()
-        return [table[:, 0].astype(np.int64)], [table[:, 1:]]
 
     def _nodes_4(self, body: int) -> tuple[list[Ints], list[Floats]]:
         stream = Stream(self, body, "Nodes")
@@ -404,12 +393,7 @@ class Reader:
         return tags, points
 
     def _elements(self, body: int) -> int:
-        if self.version >= 4:
-            self._elements_4(body)
-        elif self.binary:
-            self._elements_2_binary(body)
-        else:
-            self._elements_2(body)
+        (self._elements_4 if self.version >= 4 else self._elements_2)(body)
         return self._end
 
     def _elements_4(self, body: int) -> None:
@@ -428,68 +412,52 @@ class Reader:
         self._end = stream.finish()
 
     def _elements_2(self, body: int) -> None:
-        stream = Stream(self, body, "Elements")
-        count = int(stream.ints(1)[0])
+        count, stream = self._counted(body)
         rows: dict[tuple[str, tuple[int, ...]], list[Ints]] = {}
         done = 0
         while done < count:
-            _, type_, n_tags = (int(v) for v in stream.peek(3))
+            # Text has type and tags in each row, binary files before rows of one type.
+            if self.binary:
+                type_, number, n_tags = (int(v) for v in stream.ints(3))
+            else:
+                _, type_, n_tags = (int(v) for v in stream.peek(3))
             kind = self._kind(type_, stream)
+            if self.binary and (number < 1 or n_tags < 0):
+                raise self.fault("$Elements: a block of elements is empty or damaged", body)
             if n_tags < 0:
                 raise self.fault("$Elements: a number of tags is negative", body)
-            width = 3 + n_tags + N_NODES[kind]
-            table = stream.run(width, count - done, (1, 2))
-            physical = np.abs(table[:, 3]) if n_tags else np.zeros(len(table), np.int64)
+            first = 1 if self.binary else 3
+            width = first + n_tags + N_NODES[kind]
+            if self.binary:
+                table = stream.ints(number * width).reshape(-1, width)
+            else:
+                table = stream.run(width, count - done, (1, 2))
+            physical = np.abs(table[:, first]) if n_tags else np.zeros(len(table), np.int64)
             for group in np.unique(physical):
                 place = (kind, (int(group),) if group else ())
                 mine = table[physical == group]
-                rows.setdefault(place, []).append(mine[:, [0, *range(3 + n_tags, width)]])
+                rows.setdefault(place, []).append(mine[:, [0, *range(first + n_tags, width)]])
             done += len(table)
         self._end = stream.finish()
-        self._add_rows(rows)
-
-    def _elements_2_binary(self, body: int) -> None:
-        count, body = self._count_line(body)
-        stream = Stream(self, body, "Elements")
-        rows: dict[tuple[str, tuple[int, ...]], list[Ints]] = {}
-        done = 0
-        while done < count:
-            type_, number, n_tags = (int(v) for v in stream.ints(3))
-            kind = self._kind(type_, stream)
-            if number < 1 or n_tags < 0:
-                raise self.fault("$Elements: a block of elements is empty or damaged", body)
-            width = 1 + n_tags + N_NODES[kind]
-            table = stream.ints(number * width).reshape(-1, width)
-            physical = np.abs(table[:, 1]) if n_tags else np.zeros(number, np.int64)
-            for group in np.unique(physical):
-                mine = table[physical == group]
-                place = (kind, (int(group),) if group else ())
-                rows.setdefault(place, []).append(mine[:, [0, *range(1 + n_tags, width)]])
-            done += number
-        self._end = stream.finish()
-        self._add_rows(rows)
-
-    def _add_rows(self, rows: dict[tuple[str, tuple[int, ...]], list[Ints]]) -> None:
         for (kind, groups), parts in rows.items():
             table = np.concatenate(parts)
             self.parsed.blocks.append(Block(kind, groups, table[:, 0], table[:, 1:]))
 
     def _kind(self, type_: int, stream: Stream) -> str:
+        if type_ in NAMES:
+            return NAMES[type_]
+        text = (
+            f"Gmsh's element type {type_} is not read; expected triangles "
+            "(3 or 6 nodes) and quadrilaterals (4, 8 or 9), with lines and points"
+        )
         if type_ in HIGHER:
-            at = stream.start if self.binary else stream.place()
-            raise UnsupportedError(
-                f"$Elements: the elements are of third or higher order (Gmsh's type {type_}); "
-                "mesh with first or second order (gmsh -order 2)",
-                Location(self.path, self.data.count(b"\n", 0, at) + 1),
+            text = (
+                f"the elements are of third or higher order (Gmsh's type {type_}); "
+                "mesh with first or second order (gmsh -order 2)"
             )
-        if type_ not in NAMES:
-            at = stream.start if self.binary else stream.place()
-            raise UnsupportedError(
-                f"$Elements: Gmsh's element type {type_} is not read; expected triangles "
-                "(3 or 6 nodes) and quadrilaterals (4, 8 or 9), with lines and points",
-                Location(self.path, self.data.count(b"\n", 0, at) + 1),
-            )
-        return NAMES[type_]
+        at = stream.start if self.binary else stream.place()
+        where = Location(self.path, self.data.count(b"\n", 0, at) + 1)
+        raise UnsupportedError(f"$Elements: {text}", where)
 
     def _count_line(self, body: int) -> tuple[int, int]:
         end = self.data.find(b"\n", body)

@@ -8,7 +8,7 @@ import os
 import numpy as np
 
 import corota._core as _core
-from corota.arrays import Floats, Ints
+from corota.arrays import Floats, Ints, Lookup
 from corota.errors import InputError
 from corota.io.deck.lexer import READ
 from corota.io.gmsh.parse import Parsed, Reader
@@ -42,7 +42,7 @@ def read_gmsh(path: str | os.PathLike[str]) -> Mesh:
 
 
 def _mesh(parsed: Parsed, path: str) -> Mesh:
-    index = _Index(parsed.tags)
+    index = Lookup(parsed.tags)
     blocks: dict[str, list[tuple[Ints, Ints, Ints]]] = {}
     lines: list[tuple[Ints, Ints]] = []
     spots: list[tuple[Ints, Ints]] = []
@@ -92,20 +92,6 @@ def _mesh(parsed: Parsed, path: str) -> Mesh:
             _add(mesh.node_sets, name, nodes.ravel())
             used[nodes] = True
     return _compact(mesh, used)
-
-
-class _Index:
-    """Row of each node tag, -1 for unknown ones."""
-
-    def __init__(self, tags: Ints) -> None:
-        self.order = np.argsort(tags, kind="stable")
-        self.tags = tags[self.order]
-
-    def __call__(self, tags: Ints) -> Ints:
-        if len(self.tags) == 0:
-            return np.full(tags.shape, -1)
-        at = np.minimum(np.searchsorted(self.tags, tags), len(self.tags) - 1)
-        return np.where(self.tags[at] == tags, self.order[at], -1)
 
 
 def _without_copies(nodes: Ints) -> tuple[Ints, Ints, Ints]:

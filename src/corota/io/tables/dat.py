@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import Floats, Ints, distinct
+from corota.arrays import Floats, Ints, Lookup, distinct
 from corota.errors import InputError
 from corota.io.tables.dat_contact import VARIABLES as CONTACT_VARIABLES
 from corota.io.tables.dat_contact import contact_tables
@@ -211,15 +211,8 @@ def _picked(
         data = take(block)
         if data is None:
             continue
-        if cells is None:
-            place = block.cells
-            pick = np.ones(len(block.cells), dtype=bool)
-        else:
-            order = np.argsort(cells, kind="stable")
-            at = np.searchsorted(cells[order], block.cells)
-            at = np.minimum(at, max(len(cells) - 1, 0))
-            pick = cells[order][at] == block.cells if len(cells) else np.zeros(0, bool)
-            place = order[at] if len(cells) else at
+        place = block.cells if cells is None else Lookup(cells)(block.cells)
+        pick = place >= 0
         if not pick.any():
             continue
         places.append(place[pick])

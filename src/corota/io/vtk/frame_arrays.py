@@ -17,11 +17,17 @@ from corota.results.averaging import (
     nodes_of_groups,
     section_of_cells,
 )
-from corota.results.table import CONTACT, INVARIANTS, TABLE, TENSORS
+from corota.results.table import CONTACT, HARMONIC, INVARIANTS, TABLE, TENSORS
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from corota.model.model import Model
     from corota.results.results import Frame
+
+
+#: Arrays at nodes that a frame holds in its own attributes.
+NODAL_ARRAYS = {row.stored for row in TABLE.values() if row.frame}
 
 
 def six(tensor: Floats) -> Floats:
@@ -47,6 +53,47 @@ def point_data(frame: Frame, averaging: Averaging) -> dict[str, Floats]:
     for name, values in averaging.nodal(frame.fields, stored).items():
         data |= tensor_arrays(name, values) if name in TENSORS else {name: values}
     return data
+
+
+def nodal_values(at: Mapping[str, Floats], n: int) -> dict[str, Any]:
+    """Nodal values of a frame by the names of its attributes, the reverse of :func:`point_data`.
+
+    Parameters
+    ----------
+    at : mapping of str to ndarray
+        Arrays at the nodes of a file.
+    n : int
+        Number of nodes.
+    """
+    forces = {"RF": ("reaction", "reaction moment"), "F": ("external force", "external moment")}
+
+    def with_turn(name: str, turn: str) -> Floats:
+        """The first two columns, and the third from an array of its own."""
+        return np.column_stack([at[name][:, :2], at.get(turn, np.zeros(n))])
+
+    found: dict[str, Any] = {"U": at["displacement"][:, :2], "UR": at["rotation"]}
+    for attribute, (name, moment) in forces.items():
+        # Not numbers where the file has none.
+        found[attribute] = with_turn(name, moment) if name in at else np.full((n, 3), np.nan)
+    for attribute, name in (("V", "velocity"), ("A", "acceleration")):
+        if name in at:
+            found[attribute] = with_turn(name, f"angular {name}")
+    if "temperature" in at:
+        found["T"] = at["temperature"]
+    for attribute, names in (("C", CONTACT), ("H", HARMONIC)):
+        if any(name in at for name in names):
+            columns = np.column_stack([at.get(name, np.zeros(n)) for name in names])
+            # Frames of other procedures have zeros in place of amplitudes.
+            if attribute == "C" or columns.any():
+                found[attribute] = columns
+    head = f"{CONTACT[0]}: "
+    pairs = [name.removeprefix(head) for name in at if name.startswith(head)]
+    found["pairs"] = {
+        pair: np.column_stack([at.get(f"{column}: {pair}", np.zeros(n)) for column in CONTACT])
+        for pair in pairs
+    }
+    found["absent"] = frozenset(key for key, (name, _) in forces.items() if name not in at)
+    return found
 
 
 def tensor_arrays(name: str, values: Floats) -> dict[str, Floats]:

@@ -3,11 +3,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.mesh.kinds import KINDS
+from corota.errors import InputError
+from corota.mesh import Cells
+from corota.mesh.kinds import KINDS, N_NODES
 from corota.results.averaging import section_of_cells
 from corota.results.rigid import moved, rigid_curves, rigid_lines
 
@@ -43,6 +46,28 @@ def topology(mesh: Mesh) -> tuple[Ints, Ints, NDArray[np.uint8], Ints]:
         return *(np.zeros(0, np.int64),) * 2, np.zeros(0, np.uint8), np.zeros(0, np.int64)
     ends = np.concatenate([[0], np.cumsum(np.concatenate(sizes))])
     return np.concatenate(chain), ends, np.concatenate(types), np.concatenate(index)
+
+
+def grid_cells(types: Ints, chain: Ints, ends: Ints, labels: Ints) -> list[Cells]:
+    """Blocks of cells of a grid: runs of one type.
+
+    Raises
+    ------
+    InputError
+        If a type is not one of ours.
+    """
+    kinds = {number: kind for kind, number in VTK_TYPES.items()}
+    cells = []
+    cuts = [0, *(np.flatnonzero(np.diff(types)) + 1).tolist(), len(types)]
+    for first, end in pairwise(cuts):
+        if first == end:
+            continue
+        kind = kinds.get(int(types[first]))
+        if kind is None:
+            raise InputError(f"cell type {types[first]} is not one of Corota's")
+        nodes = chain[ends[first] : ends[end]].reshape(-1, N_NODES[kind])
+        cells.append(Cells(kind, nodes, labels[first:end]))
+    return cells
 
 
 class Grid:

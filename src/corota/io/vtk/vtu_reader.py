@@ -3,30 +3,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
-from corota.arrays import Floats, Ints
+from corota.arrays import Ints
 from corota.errors import FileError
 from corota.io.regular_file import read_bytes
-from corota.io.vtk.grid import POLY_LINE, VTK_TYPES
-from corota.mesh import Cells, Mesh
-from corota.mesh.kinds import N_NODES
+from corota.io.vtk.frame_arrays import NODAL_ARRAYS, nodal_values
+from corota.io.vtk.grid import POLY_LINE, grid_cells
+from corota.mesh import Mesh
 from corota.model.model import Model
 from corota.results.results import Frame, Results
-from corota.results.table import CONTACT, TABLE
+from corota.results.table import CONTACT
 
 _TYPES = {"Float64": np.float64, "Float32": np.float32, "Int64": np.int64, "UInt8": np.uint8}
-_KINDS = {number: kind for kind, number in VTK_TYPES.items()}
-#: Arrays at nodes that a frame holds in its own attributes.
-_OWN = {row.stored for row in TABLE.values() if row.frame}
-
-#: Forces that a file may leave out.
-_FORCES = {"RF": "reaction", "F": "external force"}
 
 
 def read_vtk_xml(path: Path) -> Results:
@@ -96,16 +89,9 @@ def _mesh(data: dict[str, Any]) -> Mesh:
     types, chain = data["types"], data["connectivity"]
     ends = np.concatenate([[0], data["offsets"]])
     n_cells = int((types != POLY_LINE).sum())
-    n_nodes = int(chain[: ends[n_cells]].max(initial=-1)) + 1
     lines = chain[ends[n_cells] :]
     n_nodes = int(lines.min()) if len(lines) else len(data["Points"])
-    cuts = [0, *(np.flatnonzero(np.diff(types[:n_cells])) + 1).tolist(), n_cells]
-    cells = []
-    for first, end in pairwise(cuts):
-        if first < end:
-            kind = _KINDS[int(types[first])]
-            nodes = chain[ends[first] : ends[end]].reshape(-1, N_NODES[kind])
-            cells.append(Cells(kind, nodes, data["element label"][first:end]))
+    cells = grid_cells(types[:n_cells], chain, ends, data["element label"])
     return Mesh(data["Points"][:n_nodes, :2], cells)
 
 
@@ -120,27 +106,8 @@ def _frame(mesh: Mesh, data: dict[str, Any], number: int) -> Frame:
     }
     names = [k for k in data if k not in geometry | still and k not in of_cells]
     at = {k: np.asarray(data[k][:n]) for k in names if len(data[k]) == rows}
-    pairs: dict[str, Floats] = {}
-    for name in [k for k in at if k.startswith("CPRESS: ")]:
-        pair = name.removeprefix("CPRESS: ")
-        pairs[pair] = np.column_stack([at[f"{column}: {pair}"] for column in CONTACT])
-
-    def force(name: str, moment: str) -> Floats:
-        if name not in at:
-            return np.full((n, 3), np.nan)
-        return np.column_stack([at[name][:, :2], at[moment]])
-
     time = float(np.ravel(data["TimeValue"])[0])
-    there = {"V": "velocity", "A": "acceleration"}
-    moving: dict[str, Any] = {
-        key: force(name, f"angular {name}") for key, name in there.items() if name in at
-    }
-    if "temperature" in at:
-        moving["T"] = at["temperature"]
-    for letter in ("C", "H"):  # contact at nodes, amplitudes and phases
-        columns = [row.stored for row in TABLE.values() if row.frame == letter]
-        if columns[0] in at:
-            moving[letter] = np.column_stack([at[name] for name in columns])
+    values = nodal_values(at, n)
     stems = tuple(f"{column}: " for column in CONTACT)
     return Frame(
         1,
@@ -148,13 +115,11 @@ def _frame(mesh: Mesh, data: dict[str, Any], number: int) -> Frame:
         time,
         time,
         1.0,
-        at["displacement"][:, :2],
-        at["rotation"],
-        force("reaction", "reaction moment"),
-        force("external force", "external moment"),
-        pairs=pairs,
-        averages={k: v for k, v in at.items() if k not in _OWN and not k.startswith(stems)},
+        values.pop("U"),
+        values.pop("UR"),
+        values.pop("RF"),
+        values.pop("F"),
+        averages={k: v for k, v in at.items() if k not in NODAL_ARRAYS and not k.startswith(stems)},
         cell_averages=of_cells,
-        absent=frozenset(k for k, v in _FORCES.items() if v not in at),
-        **moving,
+        **values,
     )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import Lookup
 from corota.errors import Diagnostic, Location
 from corota.io.deck.card import key
 from corota.io.deck.elements import ELEMENTS, LINE_ELEMENTS, LINES, collapsed
@@ -34,34 +35,6 @@ MAX_LISTED = 20
 OUT_OF_PLANE = r"\bdof [345]\b|out of (the|its) plane"
 
 
-class Lookup:
-    """Indices of labels.
-
-    Parameters
-    ----------
-    labels, indices : ndarray of int, shape (n,)
-    """
-
-    def __init__(self, labels: Ints, indices: Ints) -> None:
-        if (np.diff(labels) < 0).any():
-            order = np.argsort(labels, kind="stable")
-            labels, indices = labels[order], indices[order]
-        self._labels, self._indices = labels, indices
-        # Labels without gaps are looked up by their distance from the first.
-        self._dense = len(labels) > 0 and bool((np.diff(labels) == 1).all())
-
-    def __call__(self, labels: Ints) -> Ints:
-        """Index of each label, -1 where there is none."""
-        if len(self._labels) == 0:
-            return np.full(np.shape(labels), -1, dtype=np.int64)
-        if self._dense:
-            at = labels - self._labels[0]
-            inside = (at >= 0) & (at < len(self._labels))
-            return np.where(inside, self._indices[np.where(inside, at, 0)], -1)
-        at = np.minimum(np.searchsorted(self._labels, labels), len(self._labels) - 1)
-        return np.where(self._labels[at] == labels, self._indices[at], -1)
-
-
 @dataclass(eq=False, repr=False)
 class View:
     """One name space placed in the model: the flat deck, or an instance of a part."""
@@ -69,9 +42,9 @@ class View:
     scope: Scope
     prefix: str = ""
     instance: Instance | None = None
-    nodes: Lookup = field(default_factory=lambda: Lookup(np.zeros(0, int), np.zeros(0, int)))
-    cells: Lookup = field(default_factory=lambda: Lookup(np.zeros(0, int), np.zeros(0, int)))
-    lines: Lookup = field(default_factory=lambda: Lookup(np.zeros(0, int), np.zeros(0, int)))
+    nodes: Lookup = field(default_factory=lambda: Lookup(np.zeros(0, np.int64)))
+    cells: Lookup = field(default_factory=lambda: Lookup(np.zeros(0, np.int64)))
+    lines: Lookup = field(default_factory=lambda: Lookup(np.zeros(0, np.int64)))
     node_offset: int = 0
     cell_offset: int = 0
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from corota.arrays import Floats, Ints, distinct
+from corota.arrays import Floats, Ints, Lookup, distinct
 from corota.errors import InputError
 from corota.io.deck.build.materials import build_material
 from corota.io.deck.build.mesh import View, views_in
@@ -73,8 +73,7 @@ def _alike(
     if not by_cells:
         yield mine, thickness, angle
         return
-    order = np.argsort(cells)
-    at = order[np.searchsorted(cells[order], mine)]
+    at = Lookup(cells)(mine)
     turns = by_cells.get("angle", np.zeros(len(cells)))[at]
     depths = by_cells.get("thickness", np.zeros(len(cells)))[at]
     pairs, which = np.unique(np.column_stack([turns, depths]), axis=0, return_inverse=True)

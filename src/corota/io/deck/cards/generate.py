@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from corota.arrays import Floats, Ints, distinct
+from corota.arrays import Floats, Ints, Lookup, distinct
 from corota.io.deck import numerals
 from corota.io.deck.card import Card, Refused, Row, both, complete, key, nearest
 from corota.io.deck.deck import Deck
@@ -214,12 +214,10 @@ def _points(deck: Deck, row: Row, labels: Ints) -> Floats:
     blocks = deck.scope.nodes
     every = np.concatenate([np.zeros(0, np.int64), *(b.labels for b in blocks)])
     xyz = np.concatenate([np.zeros((0, 3)), *(b.points for b in blocks)])
-    order = np.argsort(every, kind="stable")
-    at = np.minimum(np.searchsorted(every[order], labels), max(len(every) - 1, 0))
-    if len(labels) and (not len(every) or (every[order][at] != labels).any()):
-        missing = labels[~np.isin(labels, every)][0]
-        row.refuse(0, f"node {missing} is not defined before this card")
-    return np.asarray(xyz[order][at])
+    at = Lookup(every)(labels)
+    if (at < 0).any():
+        row.refuse(0, f"node {labels[at < 0][0]} is not defined before this card")
+    return np.asarray(xyz[at])
 
 
 def _set(deck: Deck, row: Row, index: int) -> Ints | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import Lookup
 from corota.errors import FileError
 from corota.io.deck.card import Card, Refused, Row
 from corota.io.deck.drafts import Draft
@@ -126,11 +127,8 @@ def _move_by_results(draft: ImperfectionDraft, path: Path, mesh: Mesh, nodes: In
             # Of a static step the displacement counts as its only mode.
             wanted = draft.increment or frames[-1].increment
             shapes = dict(enumerate((f for f in frames if f.increment == wanted), 1))
-        labels = results.mesh.node_labels
-        order = np.argsort(labels)
-        at = np.minimum(np.searchsorted(labels[order], mesh.node_labels[nodes]), len(labels) - 1)
-        source = order[at]
-        missing = nodes[labels[source] != mesh.node_labels[nodes]]
+        source = Lookup(results.mesh.node_labels)(mesh.node_labels[nodes])
+        missing = nodes[source < 0]
         if len(missing):
             draft.card.error(
                 f"{path.name} has no node {mesh.node_labels[missing[0]]} ({len(missing)} nodes of "
