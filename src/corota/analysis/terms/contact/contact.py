@@ -179,8 +179,7 @@ class ContactTerm(Term):
 
     def nodes(self, role: Role) -> Ints:
         """Nodes of ties, or of slaves or masters of contact."""
-        tied = [pair for pair in self.pairs if pair.tied]
-        pairs = tied if role == "tied" else [pair for pair in self.pairs if not pair.tied]
+        pairs = [pair for pair in self.pairs if pair.tied == (role == "tied")]
         sides = [NO_NODES]
         if role != "master":
             sides += [pair.slave.node_list for pair in pairs]
@@ -287,32 +286,36 @@ class ContactTerm(Term):
             self._pressure = self._pressures()
         self.law_share = 1.0
         if scheme:
-            self._share_law(scheme, step)
+            from corota.model.schemes import SCHEMES
+
+            # Laws of pressure are weighed as the scheme weighs forces.
+            if scheme in SCHEMES:
+                self.law_share -= SCHEMES[scheme](step.alpha, step.rho_inf).alpha_f  # type: ignore[attr-defined]
         for pair in self.pairs:
             pair.end_share = 1.5 - self.law_share
         self._keep_law_force()
 
     def _check_pairs(self, step: Step, scheme: str) -> None:
         """Refuse pairs whose conditions a step does not have."""
+        path = getattr(step, "path", None) is not None
+        other = scheme in ("central_difference", "energy_momentum")
         for pair in self.pairs:
-            limited = pair.shear_limit < np.inf
-            adheres = not pair.tied and not pair.separates
-            path = getattr(step, "path", None) is not None
+            why = ""
             if path and isinstance(pair.item, ContactPair) and pair.item.varies:
-                raise UnsupportedError(
-                    f"contact pair {pair.name!r}: friction that depends on slip rate or pressure "
-                    "is not part of path control, which has no time; use steps under loads",
-                    pair.item.where,
+                why = (
+                    "friction that depends on slip rate or pressure is not part of path control, "
+                    "which has no time; use steps under loads"
                 )
-            other = scheme in ("central_difference", "energy_momentum")
-            if (limited or adheres) and (path or other):
+            adheres = not pair.tied and not pair.separates
+            if (path or other) and (adheres or pair.shear_limit < np.inf):
                 what = "that do not separate" if adheres else "with a largest shear traction"
                 how = "path control" if path else f"scheme={scheme!r}"
-                raise UnsupportedError(
-                    f"contact pair {pair.name!r}: surfaces {what} are not part of {how}; use "
-                    "static steps under loads, or implicit ones",
-                    pair.item.where,
+                why = why or (
+                    f"surfaces {what} are not part of {how}; use static steps under loads, or "
+                    "implicit ones"
                 )
+            if why:
+                raise UnsupportedError(f"contact pair {pair.name!r}: {why}", pair.item.where)
 
     def _enter(self, explicit: bool, ramp: bool) -> None:
         """Let pairs begin and end with the step; what those that end pressed fades."""
@@ -330,13 +333,6 @@ class ContactTerm(Term):
                 fading = self.system.at_nodes(force)
                 if self.damps and ramp:
                     self.fading = self.fading + fading if len(self.fading) else fading
-
-    def _share_law(self, scheme: str, step: Step) -> None:
-        """Weigh laws of pressure as the time scheme weighs forces."""
-        from corota.model.schemes import SCHEMES
-
-        if scheme in SCHEMES:
-            self.law_share -= SCHEMES[scheme](step.alpha, step.rho_inf).alpha_f  # type: ignore[attr-defined]
 
     def _start_pair(self, pair: Pair, x: Floats, explicit: bool) -> None:
         """Check the initial gaps of a pair: report, adjust or ramp them."""

@@ -32,6 +32,7 @@ from corota.analysis.terms.contact.gaps import (
     PATIENCE,
     SAME,
     SLIPPING,
+    SMALL,
     WAITED,
     RightHandSides,
     sticking,
@@ -74,9 +75,6 @@ SETTLED = 1e-6
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
 #: Merit of a correction: fraction of the friction bound from which it is repeated with slip.
 FRICTION_EXCESS = 2.0
-#: Merit of a correction: slip over the length of an edge against which friction acts, whatever held
-#: before.
-FAR_SLIP = 0.01
 
 
 class ContactEquations:
@@ -427,7 +425,7 @@ class ContactEquations:
                 if rates is not None:
                     # What stuck without traction, or goes far, takes the direction of its slip.
                     slip = (terms.slip + rates[k][1]) * slip_direction
-                    wrong = released[k] & (slip > FAR_SLIP * pair.edge * pair.full)
+                    wrong = released[k] & (slip > SMALL * pair.edge * pair.full)
                     slip_direction = np.where(wrong, -slip_direction, slip_direction)
                     turned = turned or bool(wrong.any())
                 released[k] |= over
@@ -520,14 +518,14 @@ class ContactEquations:
         if not outcome.converged:
             settled.reason = f"{outcome.reason}{self.explain(outcome.at)}"
             self.term.revert()
+        notes = [settled.note] if settled.note else []
         if outcome.converged and self.pivoted:
-            said = f"contact states by pivoting in {self.pivoted} iterations"
-            settled.note = f"{settled.note}; {said}".strip("; ")
+            notes.append(f"contact states by pivoting in {self.pivoted} iterations")
         if outcome.converged and self.kink is not None and self.contact_state is not None:
             state = self.contact_state
             self.contact_state = replace(state, terms=both_sides(self.kink, state.terms))
-            said = "equilibrium at a kink of the contact surfaces"
-            settled.note = f"{settled.note}; {said}".strip("; ")
+            notes.append("equilibrium at a kink of the contact surfaces")
+        settled.note = "; ".join(notes)
         return settled
 
     def refuse(self, at: Evaluation, z: Floats) -> str:
@@ -629,13 +627,8 @@ def linearized(
 ) -> Linearized:
     """The border for states, its right-hand side, and its negative pivots.
 
-    Behind these, of each pair: the slopes of slipping tractions over the pressure and their
-    tractions at no pressure, shapes (n,).
-
-    Parameters
-    ----------
-    slip_directions : list of ndarray
-        Signs of slipping tractions of each pair.
+    Behind these, of each pair: the slopes of slipping tractions, whose signs are given, over the
+    pressure and their tractions at no pressure, shapes (n,).
     """
     geometric_stiffness, skew, rows, follow, slopes = [], [], [], [], []
     diagonal, rhs = np.ones(term.n), np.zeros(term.n)
@@ -653,29 +646,20 @@ def linearized(
         to_rows = term.dofs(terms.variables)
         to_acting = to_rows if acting is terms else term.dofs(acting.variables)
 
-        def columns(
-            name: str,
-            start: int,
-            chosen: NDArray[np.bool_],
-            share: float = 1.0,
-            both: tuple[Terms, Terms] = (terms, acting),
-            dofs: tuple[Ints, Ints] = (to_rows, to_acting),
-        ) -> None:
-            """A gradient at the end in rows and columns; forces may act along another."""
-            k, own = both[0].constraint, share * getattr(both[0], name)
-            rows.append(border(dofs[0], start + k, -own, chosen[k]))
-            if both[1] is not both[0]:
-                follow.append(border(dofs[0], start + k, own, chosen[k]))
-                k, own = both[1].constraint, share * getattr(both[1], name)
-                follow.append(border(dofs[1], start + k, -own, chosen[k]))
-
-        columns("gap_gradient", first, closed, share)
+        # A gradient at the end in rows and columns; forces may act along another.
+        parts = [("gap_gradient", first, closed, share), ("slip_gradient", second, sticks, 1.0)]
+        for name, start, chosen, weight in parts[: 1 + pair.two]:
+            k, own = terms.constraint, weight * getattr(terms, name)
+            rows.append(border(to_rows, start + k, -own, chosen[k]))
+            if acting is not terms:
+                follow.append(border(to_rows, start + k, own, chosen[k]))
+                k, own = acting.constraint, weight * getattr(acting, name)
+                follow.append(border(to_acting, start + k, -own, chosen[k]))
         # Tractions that are known after the correction go to the right-hand side.
         known, shear = np.where(closed, 0.0, -share * p), np.zeros(pair.n)
         if pair.two:
             diagonal[second:end], rhs[second:end] = dq, rq
             expected += int(sticks.sum())
-            columns("slip_gradient", second, sticks)
             shear = np.where(sticks, 0.0, ratio * p + level - q)
             k = acting.constraint
             slope = -ratio[k, None] * acting.slip_gradient
@@ -711,13 +695,7 @@ def linearized(
 def second_derivatives(
     term: ContactTerm, pair: Pair, p: Floats, q: Floats
 ) -> tuple[Triplets, Triplets]:
-    """Geometric stiffness: derivatives of the directions of the tractions.
-
-    Returns
-    -------
-    even, odd : Triplets
-        Symmetric part, and the skew part that friction has.
-    """
+    """Geometric stiffness, derivatives of the directions of the tractions: even and skew part."""
     with term.system.timed("contact"):
         _, variables, values = pair.core.hessian(p[pair.owner], q[pair.owner])
     where = term.dofs(variables)

@@ -248,10 +248,9 @@ def discrete_gradient(
     begun, full : ndarray, shape (n,)
         Weighted gap at the start [length^3], and whole area [length^2].
     positions : tuple of ndarray, shape (n_nodes, 3)
-        Positions and rotations at the start and at the end.
-    master : RigidCurve or other
+        At the start and at the end.
     rounding : float
-        Length below which deformations are rounding [length].
+        Of deformations [length].
     """
     old, x = positions
     n = len(full)

@@ -258,15 +258,11 @@ class Approach:
         # Surfaces may also pass closely.
         if not term.opens or self.in_a_row >= PATIENCE:
             return dt
-        x = rates = acceleration = None
-        until = dt
+        x, acceleration = term.positions(term.u), self._accelerations(now)
+        rates, until = self._rates(now, acceleration), dt
         for number, pair in enumerate(term.pairs):
             if pair.tied:
                 continue
-            if x is None or rates is None or acceleration is None:
-                x = term.positions(term.u)
-                acceleration = self._accelerations(now)
-                rates = self._rates(now, acceleration)
             terms = pair.gaps_at(term, number, x)
             apart = pair.apart(terms, None if term.at is None else term.at.states[number])
             if not apart.any():

@@ -297,9 +297,9 @@ def gives_way(contact_term: ContactTerm) -> str:
     return ""
 
 
-#: Notes alone: slave edges that a round corner should measure along its radius, its least turn,
-#: and that from which hard contact has no constraint of it as a corner [rad].
-EDGES, TURN, PIN = 2.0, math.radians(20.0), 3.1
+#: Notes alone: slave edges that a round corner should measure along its radius, and its least turn
+#: [rad].
+EDGES, TURN = 2.0, math.radians(20.0)
 
 
 def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
@@ -335,15 +335,7 @@ def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
 
 
 def start_notes(pair: Pair, mesh: Mesh, area: Floats | None, x: Floats) -> list[str]:
-    """Notes on a pair that begins to act.
-
-    Parameters
-    ----------
-    area : ndarray, shape (n,), or None
-        Areas of the constraints that have an opposite surface; None after the first step.
-    x : ndarray, shape (n_nodes, 2)
-        Positions at the start.
-    """
+    """Notes on a pair that begins to act at positions `x`; `area` is None after the first step."""
     labels = mesh.node_labels
     notes = [fillet_note(pair), corner_note(pair, mesh.points, labels)]
     if area is not None:
@@ -357,8 +349,9 @@ def fillet_note(pair: Pair) -> str:
     if not isinstance(curve, RigidCurve) or pair.beside is None:
         return ""
     rows = curve.segments
-    # Clockwise arcs have the rigid body inside: the corners that slave edges pass around.
-    corners = rows[rows[:, 6] < -(PIN if pair.law is None else TURN)]
+    # Clockwise arcs have the rigid body inside: the corners that slave edges pass around. In hard
+    # contact those of less than half a turn have constraints of their own.
+    corners = rows[rows[:, 6] < -(TURN if pair.law else math.pi - SAME)]
     if not len(corners):
         return ""
     radius = float(np.hypot(*(corners[:, :2] - corners[:, 4:6]).T).min())

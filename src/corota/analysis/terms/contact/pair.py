@@ -56,8 +56,6 @@ REDUNDANT = 1e-4
 #: Discretization at the ends of the master: covered fraction of its area below which a node passes
 #: its part to a neighbor, and twice that from which it takes it back for good.
 WEAK = 0.2
-#: Edges by which its friction would move a slave node whose stiffness does not count.
-WEIGHTLESS = 0.1
 
 
 class Pair:
@@ -485,21 +483,17 @@ class Pair:
         """The constraints as arrays, as the law takes them.
 
         A slip changes a shear traction `q` by the stiffness of the node. Where this is nothing
-        beside the traction, as of a node that a support draws along, the sign of the slip decides.
+        beside the traction, which would move it by an edge, as of a node that a support draws
+        along, the sign of the slip decides.
         """
         begin = None if self.start is None or self.law is None else self.gap_of_start(terms)
         stiffness = self.stiffness
         if q is not None and self.rubs:
             by_sign = np.abs(q) / (SMALL * self.edge)
-            stiffness = np.where(self.weightless(q), by_sign, stiffness)
+            stiffness = np.where(stiffness * self.edge < np.abs(q), by_sign, stiffness)
         own = self.full, self.area, stiffness, begin, self.adhering
         friction = self.friction if self.rubs else None
         return terms.gap, terms.slip, terms.area, *own, friction
-
-    def weightless(self, q: Floats) -> Bools:
-        """Constraints whose slave node has no stiffness that counts beside a shear traction."""
-        weak: Bools = self.stiffness * self.edge * WEIGHTLESS < np.abs(q)
-        return weak
 
     @property
     def adhering(self) -> Bools | None:
@@ -612,12 +606,7 @@ class Pair:
     ) -> None:
         """Add the forces of tractions along the gradients of some terms, and their sizes, in place.
 
-        Parameters
-        ----------
-        dofs : ndarray of int, shape (m, v)
-            Of the variables of the terms, -1 for none.
-        p, q : ndarray, shape (n,)
-        force, size : ndarray, shape (n_dofs,)
+        `dofs` of the variables of the terms have the shape (m, v), -1 for none.
         """
         if not len(terms.constraint):
             return
@@ -639,17 +628,7 @@ class Pair:
         before: tuple[Floats, Floats],
         states: NDArray[np.int8],
     ) -> None:
-        """Accept a state.
-
-        Parameters
-        ----------
-        p, q : ndarray, shape (n,)
-            Pressures and shear tractions.
-        before : ndarray, ndarray, shape (n,)
-            Pressures and shear tractions of the committed state.
-        states : ndarray of int, shape (n,)
-            Committed.
-        """
+        """Accept a state with tractions p, q; `before` and `states` are those of the last one."""
         self.core.commit()
         self.frozen = False
         seen = covered(terms.area, self.full)

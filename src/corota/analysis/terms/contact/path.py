@@ -165,14 +165,32 @@ class ContactPathEquations(ContactEquations):
     def around(
         self, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
     ) -> tuple[Point, Tangent] | None:
-        """A point behind the next kinks, and the direction there."""
-        if self.term.at is not None:
-            self._base = None
-        found = predict_through_events(self, base, tangent, metric, size, period)
-        if found is None:
+        """A point behind the next changes of states, and the direction there; None without any.
+
+        `size` is the distance to go, by the metric.
+        """
+        committed = self.term.at
+        if committed is None or not committed.states:
             return None
-        point, now, self._base = found
-        return point, now
+        self._base = None
+        way = EventPath(self, base, tangent, [s.copy() for s in committed.states])
+        left, met = size, None
+        while True:  # no constraint takes a state twice
+            event = way.first(None if met is None else met[0])
+            if event is None or event[0] >= left:
+                break
+            distance, k, i, state = event
+            way.go(distance)
+            left -= distance
+            if met is None or distance > SAME * size:
+                met = ((k, i), int(way.states[k][i]), state)
+            if not way.change(k, i, state, period) or not way.turn(metric, *met):
+                return None
+        if met is None:
+            return None
+        way.go(left)
+        self._base = way.states
+        return Point(way.z, way.factor, None), way.tangent
 
     def solve_with_last_factor(self, rhs: Floats) -> Floats:
         """All unknowns for forces of shape (n_dofs,), with the last factorization."""
@@ -232,68 +250,8 @@ def path_system(system: System, notes: list[str]) -> SmoothPath | ContactPathEqu
     )
 
 
-def predict_through_events(
-    path: ContactPathEquations,
-    base: Point,
-    tangent: Tangent,
-    metric: Metric,
-    size: float,
-    period: float,
-) -> tuple[Point, Tangent, States] | None:
-    """Predict a point behind changes of states; None where there is none on the way.
-
-    Parameters
-    ----------
-    base : Point
-        Committed.
-    tangent : Tangent
-        Direction there.
-    size : float
-        Distance to go, by the metric.
-
-    Returns
-    -------
-    point : Point
-    tangent : Tangent
-        Direction of the last part of the way.
-    states : list of ndarray
-        Predicted at the point.
-    """
-    committed = path.term.at
-    if committed is None or not committed.states:
-        return None
-    way = EventPath(path, base, tangent, [s.copy() for s in committed.states])
-    left, met = size, None
-    while True:  # no constraint takes a state twice
-        event = way.first(None if met is None else met[0])
-        if event is None or event[0] >= left:
-            break
-        distance, k, i, state = event
-        way.go(distance)
-        left -= distance
-        if met is None or distance > SAME * size:
-            met = ((k, i), int(way.states[k][i]), state)
-        if not way.change(k, i, state, period) or not way.turn(metric, *met):
-            return None
-    if met is None:
-        return None
-    way.go(left)
-    return Point(way.z, way.factor, None), way.tangent, way.states
-
-
 class EventPath:
-    """A way along directions of the linearized path.
-
-    Parameters
-    ----------
-    path : ContactPathEquations
-    base : Point
-        Committed.
-    tangent : Tangent
-        Direction there.
-    states : list of ndarray
-        There; changed in place.
-    """
+    """A way along directions of the linearized path, from a committed point and its states."""
 
     def __init__(
         self, path: ContactPathEquations, base: Point, tangent: Tangent, states: States

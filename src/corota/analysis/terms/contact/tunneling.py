@@ -19,7 +19,7 @@ from corota.analysis.terms.contact.gaps import AT_ONCE, CLOSED, OPEN, SAME, SLIP
 from corota.analysis.terms.contact.setup import outward
 from corota.errors import ModelError
 from corota.mesh.parts import nodes_of_cells, part_of_nodes, parts_without
-from corota.model.contact import RigidCurve, edges_or_nodes
+from corota.model.contact import ContactPair, RigidCurve, edges_or_nodes
 from corota.results.rigid import rigid_curves, rigid_lines
 
 if TYPE_CHECKING:
@@ -54,17 +54,8 @@ def passed(
 ) -> Ints:
     """Constraints whose node crossed the other side from outside to inside and is open.
 
-    Parameters
-    ----------
-    pair : Pair
-    old, new : ndarray, shape (n_nodes, 3)
-        Positions at both ends of the increment.
-    states : callable
-        Finds the states at the end, shape (n,).
-    terms : Terms
-        Gaps at the end.
-    starts : callable
-        See :func:`outside`.
+    `old` and `new` are positions at both ends of the increment, shape (n_nodes, 3), `terms` the
+    gaps at its end, `states` finds the states there, `starts` the outer sides (`outside`).
     """
     if pair.tied:
         return np.zeros(0, np.int64)
@@ -202,7 +193,6 @@ def times_of_crossing(
     first, last, ends : ndarray
         See :func:`other_side`.
     old, new : ndarray, shape (n_nodes, 3)
-        Positions at both ends of the increment.
     nodes : ndarray of int, shape (k,)
     start : ndarray, shape (k,)
         Distance at which the outer side begins for each.
@@ -262,14 +252,8 @@ def _beside(pieces: Floats, x: Floats) -> Bools:
 def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
     """Refuse a slave surface whose body starts on the wrong side of a rigid curve.
 
-    The body may have its surface on the curve, or reach through it by less than half.
-
-    Parameters
-    ----------
-    system : NumberedModel
-    pair : Pair
-    x : ndarray, shape (n_nodes, 3)
-        Positions and rotations at the start.
+    The body may have its surface on the curve, or reach through it by less than half. Positions and
+    rotations `x` at the start have the shape (n_nodes, 3).
 
     Raises
     ------
@@ -356,64 +340,35 @@ def signed_distances(pieces: Floats, points: Floats, same: float) -> tuple[Float
     return distance, best, ~beyond
 
 
-def _depth(pieces: Floats, points: Floats) -> Floats:
-    """Depth of points behind a curve, 0 before it and beyond its ends [length]."""
-    distance, _, inside = signed_distances(pieces, points, SAME * float(np.ptp(pieces)))
-    return np.where(inside, np.maximum(-distance, 0.0), 0.0)
-
-
 def passed_through(model: Model, u: Floats) -> list[str]:
     """Notes on parts of bodies in no pair that lie behind a rigid curve or in another body.
 
-    Parameters
-    ----------
-    model : Model
-    u : ndarray, shape (n_nodes, 3)
-        Displacements and rotations at the end.
+    `u` has the displacements and rotations of all nodes at the end, shape (n_nodes, 3).
     """
-    mesh, notes = model.mesh, _in_another(model, u)
-    part = part_of_nodes(mesh)
-    for curve in rigid_curves(model):
-        pairs = [pair for pair in model.contacts if pair.master is curve]
-        slaves = np.concatenate([_surface_nodes(model, pair.slave) for pair in pairs])
-        bodies = np.isin(part, part[slaves]) & (part >= 0)
-        bodies[slaves] = False
-        nodes = np.flatnonzero(bodies)
-        if not len(nodes):
-            continue
-        # Seen from a curve that moved with its reference node.
-        before, after = mesh.points[nodes], mesh.points[nodes] + u[nodes, :2]
-        node, pieces = curve.reference, _chords(curve)
-        if isinstance(node, int | np.integer):
-            at = mesh.points[node]
-            after = _turned(after, -curve.turns * u[node, 2], at + u[node, :2], at)
-        way = np.linalg.norm(after - before, axis=1)
-        depth = np.where(_depth(pieces, before) > 0.0, 0.0, _depth(pieces, after))
-        depth[depth > way] = 0.0  # it came there around an end
-        # What may lie deeper than the slave surface beside it [mean distance of slave nodes].
-        shallow = NAMED * float(np.ptp(mesh.points[slaves], axis=0).max()) / len(slaves)
+    mesh, part, notes = model.mesh, part_of_nodes(model.mesh), []
+    points, x = mesh.points, mesh.points + u[:, :2]
+
+    def note(pair: ContactPair, nodes: Ints, depth: Floats, least: float, where: str) -> None:
         deepest = int(np.argmax(depth))
-        if depth[deepest] > shallow:
+        if depth[deepest] > least:
             notes.append(
-                f"contact pair {pairs[0].name!r}: {int((depth > shallow).sum())} nodes of "
-                f"the body that are in no pair with this rigid curve lie behind it, node "
-                f"{mesh.node_labels[nodes[deepest]]} by {depth[deepest]:.3g}: they passed through. "
-                "Give the slave surface all edges of the body that may meet the curve"
+                f"contact pair {pair.name!r}: {int((depth > least).sum())} nodes that are in no "
+                f"pair {where}, node {mesh.node_labels[nodes[deepest]]} by {depth[deepest]:.3g}: "
+                "they passed through. Give the surfaces of the pair all edges that may meet"
             )
-    return notes
 
+    def entered(before: Floats, after: Floats, first: Floats, last: Floats) -> Floats:
+        """Depth of points behind pieces at the end, of those that were before them [length]."""
+        same = SAME * float(np.ptp(points))
+        start, _, beside = signed_distances(first, before, same)
+        end, _, inside = signed_distances(last, after, same)
+        return np.where(inside & ~(beside & (start < -same)), np.maximum(-end, 0.0), 0.0)
 
-def _in_another(model: Model, u: Floats) -> list[str]:
-    """Notes on bodies of which a part in no pair lies in the other body of their pair."""
-    mesh, notes = model.mesh, []
-    part, x = part_of_nodes(mesh), mesh.points + u[:, :2]
     rims = [nodes[:2] for nodes in mesh.edge_nodes(mesh.boundary_edges())]
     edges = np.array(rims, np.int64).reshape(-1, 2)
     surfaces = [s for pair in model.contacts for s in (pair.slave, pair.master)]
-    joined = np.concatenate(
-        [_surface_nodes(model, s) for s in surfaces if not isinstance(s, RigidCurve)]
-    )
-    free = np.setdiff1d(edges, joined)
+    bodies = [_surface_nodes(model, s) for s in surfaces if not isinstance(s, RigidCurve)]
+    free = np.setdiff1d(edges, np.concatenate(bodies))
     for pair in model.contacts:
         if isinstance(pair.master, RigidCurve):
             continue
@@ -421,22 +376,29 @@ def _in_another(model: Model, u: Floats) -> list[str]:
         for own, other in (sides, sides[::-1]):
             nodes = free[np.isin(part[free], np.setdiff1d(own, other))]
             rim = edges[np.isin(part[edges[:, 0]], np.setdiff1d(other, own))]
-            if not len(rim) or not len(nodes):
-                continue
-            before, after = (
-                signed_distances(at[rim], at[nodes], SAME * float(np.ptp(at)))[0]
-                for at in (mesh.points, x)
-            )
-            length = np.hypot(*(x[rim[:, 1]] - x[rim[:, 0]]).T)
-            depth = np.where(before >= -SAME * length.max(), -after, 0.0)
-            deepest = int(np.argmax(depth))
-            if depth[deepest] > NAMED * float(length.mean()):
-                notes.append(
-                    f"contact pair {pair.name!r}: boundary nodes that are in no pair lie in the "
-                    f"other body ({int((depth > 0.0).sum())} of them), node "
-                    f"{mesh.node_labels[nodes[deepest]]} by {depth[deepest]:.3g}. Give the "
-                    "surfaces of the pair all edges that may meet"
-                )
+            if len(rim) and len(nodes):
+                depth = entered(points[nodes], x[nodes], points[rim], x[rim])
+                length = np.hypot(*(x[rim[:, 1]] - x[rim[:, 0]]).T)
+                least = NAMED * float(length.mean())
+                note(pair, nodes, depth, least, "lie in the other body")
+    for curve in rigid_curves(model):
+        pairs = [pair for pair in model.contacts if pair.master is curve]
+        slaves = np.concatenate([_surface_nodes(model, pair.slave) for pair in pairs])
+        chosen = np.isin(part, part[slaves]) & (part >= 0)
+        chosen[slaves] = False
+        nodes = np.flatnonzero(chosen)
+        if not len(nodes):
+            continue
+        # Seen from a curve that moved with its reference node.
+        before, after, node = points[nodes], x[nodes], curve.reference
+        if isinstance(node, int | np.integer):
+            after = _turned(after, -curve.turns * u[node, 2], x[node], points[node])
+        pieces = _chords(curve)
+        depth = entered(before, after, pieces, pieces)
+        depth[depth > np.linalg.norm(after - before, axis=1)] = 0.0  # it came there around an end
+        # What may lie deeper than the slave surface beside it [mean distance of slave nodes].
+        least = NAMED * float(np.ptp(points[slaves], axis=0).max()) / len(slaves)
+        note(pairs[0], nodes, depth, least, "with this rigid curve lie behind it")
     return notes
 
 
