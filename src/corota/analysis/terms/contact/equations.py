@@ -397,7 +397,7 @@ class ContactEquations:
         if not (early or border.left.any() or border.left_by_others.any()):
             return found, states
         released = [np.zeros(p.n, bool) for p in self.term.pairs]
-        for _ in range(WAITED):
+        for count in range(1 + WAITED):
             new = [s.copy() for s in states]
             slip_directions = list(self.slip_directions)
             rates = self.gap_rates(at, found[0][:, 0]) if any(r.any() for r in released) else None
@@ -433,6 +433,10 @@ class ContactEquations:
             same = all(np.array_equal(a, b) for a, b in zip(new, states, strict=True))
             if same and not turned:
                 break
+            if count == WAITED:
+                # One release overloads the next constraint, as along a rope.
+                self.pivoting = self.slides = True
+                break
             before, self.slip_directions = self.slip_directions, slip_directions
             try:
                 other = self.solve(at, new, right_sides)
@@ -443,9 +447,6 @@ class ContactEquations:
                 self.slip_directions = before
                 break
             found, states = other, new
-        else:
-            # One release overloads the next constraint, as along a rope.
-            self.pivoting = self.slides = True
         return found, states
 
     def _far(self, du: Floats, right_sides: RightHandSides) -> bool:
