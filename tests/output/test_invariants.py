@@ -13,6 +13,7 @@ import corota as ct
 from corota.cli.info import result_lines
 from corota.report.fields import NodalArrays
 from corota.results import invariants
+from corota.results.derived import DERIVED, Derived
 from corota.results.table import INVARIANTS, TABLE, markdown
 from corota.results.variables import point_value
 
@@ -67,6 +68,26 @@ def test_the_report_has_arrays_of_those_that_it_does_not_compute(
     assert {"S", "TRESC", "TRIAX"} <= set(arrays.names)
     values = arrays.read(1, ["TRIAX"], 20)["TRIAX"]
     assert values == pytest.approx(run[0].nodal("TRIAX"), rel=1e-4)
+
+
+def test_a_variable_of_a_user_has_every_output(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    mean = Derived(lambda block: block.values["S"][..., :3].mean(axis=-1))
+    monkeypatch.setitem(DERIVED, "SMEAN", mean)
+    deck = tmp_path / "d.inp"
+    deck.write_text(DECK.format("SMEAN"))
+    files = ct.JobFiles(tmp_path, formats=["vtkhdf", "frd"], histories=["SMEAN"])
+    results = ct.solve(ct.read(deck), observers=[files])
+    values = point_value(results.frames[-1].fields[0], "SMEAN")
+    text = (tmp_path / "d.dat").read_text()
+    assert all(f"{value:.6E}" in text for value in values.ravel())
+    assert " -4  SMEAN " in (tmp_path / "d.frd").read_text()
+    assert "largest SMEAN" in (tmp_path / "d.csv").read_text()
+    with ct.read_results(tmp_path / "d.vtkhdf") as read:
+        assert read.nodal("SMEAN") == pytest.approx(results.nodal("SMEAN"))
+        assert read.history("SMEAN", combine="max")[-1] == values.max()
+    assert "SMEAN" in NodalArrays(results).names
 
 
 def test_an_frd_file_without_requests_leaves_them_to_its_reader(
