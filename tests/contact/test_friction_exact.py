@@ -136,6 +136,36 @@ def test_a_rigid_disc_rolls_without_slip(method):
         assert abs(slip) < 0.01 * turn
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("element", ["Q4I", "Q8", "Q8R", "T6", "Q9"])
+def test_a_disc_that_is_free_to_turn_rolls_along_a_bowl(element, method):
+    """The axle goes along an arc, in steps whose chords rise by less than the disc is pressed in.
+
+    Supports move along the chord of a step: over a longer one the disc would leave the bowl, with a
+    rotation that is unconstrained.
+    """
+    bowl, disc, pressed, angle, steps = 10.0, 3.0, 0.002, 0.15, 6
+    arm = bowl - disc + pressed
+    cell = {"Q4I": "quad4", "T6": "tri6", "Q9": "quad9"}.get(element, "quad8")
+    mesh = ct.mesh.annulus(bowl, bowl + 1.0, 1, 24, angle=30.0, start=255.0, cell=cell)
+    axle = ct.mesh.add_node(mesh, 0.0, -arm, "axle")
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=1e4, nu=0.0))
+    model.fix("outer")
+    circle = ct.RigidCurve.circle((0.0, -arm), disc, reference=axle)
+    model.contact("inner", circle, friction=0.2, method=method)
+    run = [ct.Static()]
+    run[0].fix("axle", x=0.0, y=0.0, rotation=0.0)
+    for a in np.linspace(0.0, angle, steps + 1)[1:]:
+        step = ct.Static()
+        if len(run) == 1:
+            step.release("axle", x=False, y=False, rotation=True)
+        step.fix("axle", x=arm * np.sin(a), y=arm * (1.0 - np.cos(a)), rotation=None)
+        run.append(step)
+    turn = ct.solve(model, run, threads=1).frames[-1].UR[axle]
+    assert turn == pytest.approx(-(bowl - disc) / disc * angle, rel=0.01)
+
+
 @pytest.mark.parametrize("curve", ["solid", "line"])
 def test_whole_turns_of_a_rigid_curve_count(curve):
     X, contact = against_rigid(curve, "linear", "node_to_segment", node=True)
