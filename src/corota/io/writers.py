@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import inspect
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from corota.errors import InputError
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -150,16 +152,10 @@ def _stream_pvd(path: Path, job: Job) -> Stream:
     return PvdWriter(path, job.model, job.resume)
 
 
-def _stream_frd(path: Path, job: Job) -> Stream:
+def _stream_frd(path: Path, job: Job, binary: bool = False) -> Stream:
     from corota.io.frd.writer import FrdWriter
 
-    return FrdWriter(path, job.model, job.steps, job.options, resume=job.resume)
-
-
-def _stream_frd_binary(path: Path, job: Job) -> Stream:
-    from corota.io.frd.writer import FrdWriter
-
-    return FrdWriter(path, job.model, job.steps, job.options, binary=True, resume=job.resume)
+    return FrdWriter(path, job.model, job.steps, job.options, binary, job.resume)
 
 
 #: Writer by format; a name is the file extension and, after a dash, a kind.
@@ -167,18 +163,12 @@ STREAMS: dict[str, Callable[[Path, Job], Stream]] = {
     "vtkhdf": _stream_vtkhdf,
     "pvd": _stream_pvd,
     "frd": _stream_frd,
-    "frd-binary": _stream_frd_binary,
+    "frd-binary": partial(_stream_frd, binary=True),
 }
-
-
-def _deck(mesh: Mesh, path: Path) -> None:
-    from corota.io.deck.write.mesh import write_deck_mesh
-
-    write_deck_mesh(mesh, path)
-
-
 #: Ending of the file name to the writer of meshes.
-MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {".inp": _deck}
+MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
+    ".inp": lazy("corota.io.deck.write.mesh:write_deck_mesh")
+}
 
 
 def write_mesh(mesh: Mesh, path: str | PathLike[str]) -> Path:

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from corota.errors import Location
-from corota.io.deck.card import Card, Row, key
+from corota.io.deck.card import Card, Refused, Row, key
 from corota.model.friction import Friction, largest
 
 if TYPE_CHECKING:
@@ -75,10 +75,16 @@ class NamedSet:
 class SurfaceRow:
     """One line of a surface: element label or set, and a face such as ``S2``."""
 
+    card: Card
     where: Location
     text: str
     target: str
     face: str
+
+    def refuse(self, message: str, hint: str = "") -> NoReturn:
+        """Record an error; see :meth:`corota.io.deck.card.Row.refuse`."""
+        self.card.deck.error(self.card, self.where, message, text=self.text, hint=hint)
+        raise Refused
 
 
 @dataclass(eq=False, repr=False)

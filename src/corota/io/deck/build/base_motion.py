@@ -3,11 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.io.deck.card import key
+from corota.io.deck.card import Refused, key
 from corota.model.integrated import IntegratedAmplitude, VibrationAmplitude
 from corota.model.loads import Fixed
 from corota.model.steps import Dynamic, ModalDynamic, SteadyState, Visco
@@ -23,32 +24,29 @@ NAMES = {1: "velocity", 2: "acceleration"}
 TIMED = (None, Dynamic, ModalDynamic, Visco)
 
 
-def base_motion(
-    deck: Deck, model: Model, draft: Draft, amplitude: str, step: StepDraft
-) -> str | None:
-    """Name of the integrated amplitude of a support; ``None`` after an error.
+def base_motion(deck: Deck, model: Model, draft: Draft, amplitude: str, step: StepDraft) -> str:
+    """Name of the integrated amplitude of a support.
 
     Without an amplitude the value acts at once, or grows over a dynamic step with
     ``AMPLITUDE=RAMP``. A velocity lasts until the support is given again, as in Abaqus.
+
+    Raises
+    ------
+    Refused
+        After an error.
     """
     what = NAMES[draft.order]
-    where = draft.card.at("TYPE")
     if step.make not in (TIMED if draft.order == 1 else (Dynamic, ModalDynamic)):
         steps = "*DYNAMIC or *MODAL DYNAMIC" if draft.order == 2 else "steps with time"
         text = f"TYPE={what.upper()} belongs to {steps}"
-        deck.error(draft.card, where, text, hint="prescribe the displacement in other steps")
-        return None
+        draft.card.refuse(text, "TYPE", "prescribe the displacement in other steps")
     number = next(i for i, s in enumerate(deck.steps) if s is step)
     later, moved = deck.steps[number + 1 :], deck.steps[:number]
     total = bool(amplitude) and model.amplitudes[amplitude].total_time
     if draft.order == 2 and any(s.make in (Dynamic, ModalDynamic) for s in moved):
-        deck.error(
-            draft.card,
-            where,
-            "a prescribed acceleration starts from rest; a dynamic step precedes it",
-            hint="give the whole record in the first dynamic step, in TIME=TOTAL TIME",
-        )
-        return None
+        text = "a prescribed acceleration starts from rest; a dynamic step precedes it"
+        hint = "give the whole record in the first dynamic step, in TIME=TOTAL TIME"
+        draft.card.refuse(text, "TYPE", hint)
     if (
         draft.order == 2
         and not total
@@ -57,13 +55,9 @@ def base_motion(
             for s in later
         )
     ):
-        deck.error(
-            draft.card,
-            where,
-            f"the {what} ends with its step, and a later dynamic step does not continue it",
-            hint="give it again there, or an amplitude with TIME=TOTAL TIME",
-        )
-        return None
+        text = f"the {what} ends with its step, and a later dynamic step does not continue it"
+        hint = "give it again there, or an amplitude with TIME=TOTAL TIME"
+        draft.card.refuse(text, "TYPE", hint)
     lasts = draft.order == 1 or total
     begins = sum(s.times[1] for s in moved if s.make in TIMED) if lasts else 0.0
     name = f"{what} {amplitude or 'constant'} of step {number + 1}"
@@ -93,38 +87,35 @@ def base_supports(deck: Deck, model: Model, step: StepDraft, supports: list[Fixe
     """
     before = [] if step.new_supports else [s for m in model.steps for s in m.supports]
     every = [*model.supports, *before, *supports]
-    found = []
+    found: list[Fixed] = []
     for draft in step.base_motions:
-        card = draft.card
-        table = next(
-            (a for a in model.amplitudes.values() if key(a.name) == key(draft.amplitude)), None
-        )
-        if table is None:
-            text = f"no amplitude named {draft.amplitude!r}"
-            card.error(text, "AMPLITUDE")
-            continue
-        held = [
-            s.nodes for s in every if s.dof == draft.index and s.value == 0.0 and not s.amplitude
-        ]
-        if not held:
-            text = f"no support holds dof {draft.index + 1}, which the base moves"
-            card.error(text, "DOF", hint="fix the nodes at the base by *BOUNDARY")
-            continue
-        name: str | None = table.name
-        if draft.order and step.make is SteadyState:
-            if draft.order == 1:
-                text = "in a harmonic step give the displacement or the acceleration"
-                card.error(text, "TYPE")
-                continue
-            name = f"vibration {table.name}"
-            model.amplitudes[name] = VibrationAmplitude(
-                table.time, table.value, False, name, card.where
-            )
-        elif draft.order:
-            name = base_motion(deck, model, draft, table.name, step)
-        if name is not None:
-            found += [Fixed(nodes, draft.index, draft.value[0], name, card.where) for nodes in held]
+        with suppress(Refused):
+            found += _moved(deck, model, step, draft, every)
     return found
+
+
+def _moved(
+    deck: Deck, model: Model, step: StepDraft, draft: Draft, every: list[Fixed]
+) -> list[Fixed]:
+    card = draft.card
+    named = (a for a in model.amplitudes.values() if key(a.name) == key(draft.amplitude))
+    table = next(named, None)
+    if table is None:
+        card.refuse(f"no amplitude named {draft.amplitude!r}", "AMPLITUDE")
+    held = [s.nodes for s in every if s.dof == draft.index and s.value == 0.0 and not s.amplitude]
+    if not held:
+        text = f"no support holds dof {draft.index + 1}, which the base moves"
+        card.refuse(text, "DOF", hint="fix the nodes at the base by *BOUNDARY")
+    name = table.name
+    if draft.order and step.make is SteadyState:
+        if draft.order == 1:
+            card.refuse("in a harmonic step give the displacement or the acceleration", "TYPE")
+        name = f"vibration {table.name}"
+        made = VibrationAmplitude(table.time, table.value, False, name, card.where)
+        model.amplitudes[name] = made
+    elif draft.order:
+        name = base_motion(deck, model, draft, table.name, step)
+    return [Fixed(nodes, draft.index, draft.value[0], name, card.where) for nodes in held]
 
 
 def _again(draft: Draft, step: StepDraft) -> bool:

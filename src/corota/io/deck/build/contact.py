@@ -217,14 +217,10 @@ class _Builder:
         ways, lines = [], []
         for row, own in sides:
             if row.face not in ("SPOS", "SNEG"):
-                self.deck.error(
-                    surface.card,
-                    row.where,
+                row.refuse(
                     "sides of a rigid body need SPOS (the surface is on the left of the "
-                    "direction from the first to the second node) or SNEG",
-                    text=row.text,
+                    "direction from the first to the second node) or SNEG"
                 )
-                raise Refused
             lines += own.tolist()
             ends = np.array([self.sets.line_nodes[i][:2] for i in own])
             ways.append(ends if row.face == "SPOS" else ends[:, ::-1])

@@ -13,6 +13,7 @@ import numpy as np
 from corota.arrays import Ints, distinct
 from corota.io.deck import numerals
 from corota.io.deck.card import Refused, both, key, nearest
+from corota.io.deck.drafts import SurfaceRow
 from corota.io.deck.elements import SHELLS
 from corota.lazy import lazy
 from corota.mesh.parts import cells_of
@@ -54,7 +55,7 @@ class LoadBuilder:
         if draft.kind == "nothing":
             return []
         if draft.order and step is not None:
-            _, name = both(draft, base_motion(self.deck, self.model, draft, name, step))
+            name = base_motion(self.deck, self.model, draft, name, step)
         if draft.index == 2:
             if not self._rotating(nodes).any():
                 if not draft.silent and draft.value[0] != 0.0:
@@ -274,8 +275,6 @@ class LoadBuilder:
                     "load the edges: *DSLOAD on a *SURFACE of their faces S3 to S6",
                 )
             edges = self._faces(draft, found.cells)
-            if edges is None:
-                raise Refused
             of_edges: Literal["pressure", "hydrostatic pressure"] = (
                 "pressure" if len(draft.value) == 1 else "hydrostatic pressure"
             )
@@ -317,13 +316,16 @@ class LoadBuilder:
         if draft.index < 0:
             return both(self._edge_set(draft), amplitude)
         found, name = both(self.targets.cells_of(draft), amplitude)
-        return both(self._faces(draft, found.cells), name)
+        return self._faces(draft, found.cells), name
 
-    def _faces(self, draft: Draft, cells: Ints) -> Ints | None:
-        """Edges of the face of a draft; ``None`` after an error, and where it is one node."""
+    def _faces(self, draft: Draft, cells: Ints) -> Ints:
+        """Edges of the face of a draft."""
         row = draft.row
-        edges = self.sets.faces(cells, draft.index, draft.card, row.at(1), row.text)
-        return edges if edges is not None and len(edges) else None
+        at = SurfaceRow(row.card, row.at(1), row.text, draft.target, "")
+        edges = self.sets.faces(cells, draft.index, at)
+        if not len(edges):
+            raise Refused  # the side of a quadrilateral that is one node
+        return edges
 
     def _body(
         self, draft: Draft, cells: str | Ints, amplitude: str, masses: Ints | None = None

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ import numpy as np
 from corota.arrays import Ints, distinct
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import MeshBuilder, View, view_of
-from corota.io.deck.card import Card, key, nearest
+from corota.io.deck.card import Card, Refused, key, nearest
 from corota.io.deck.elements import WITH_SIDES
 from corota.mesh.kinds import EDGES
 
@@ -345,9 +346,8 @@ class Sets:
                 parts.append(self._edges_of_lines(found.lines[~rigid]))
                 if rigid.all() and not len(found.cells):
                     continue  # sides of a rigid body: contact takes them as a curve
-            edges = self._row_edges(surface, row, found.cells)
-            if edges is not None:
-                parts.append(edges)
+            with suppress(Refused):
+                parts.append(self._row_edges(row, found.cells))
         edges = np.concatenate(parts)
         if len(edges) and self.mesh.are_lines(edges[:, 0]).all():
             return self.mesh.line_sides(edges[:, 0])
@@ -365,12 +365,12 @@ class Sets:
                     found.append((row, elements.lines))
         return found
 
-    def _row_edges(self, surface: Surface, row: SurfaceRow, cells: Ints) -> Ints | None:
+    def _row_edges(self, row: SurfaceRow, cells: Ints) -> Ints:
         lines = self.mesh.are_lines(cells)
         if len(lines) and lines.all() and row.face in ("", "SPOS", "SNEG"):
             if row.face:
                 text = f"{row.face}: contact acts on both sides of lines"
-                self.deck.note(f"{row.where}: {surface.card.spelled}: {text}")
+                self.deck.note(f"{row.where}: {row.card.spelled}: {text}")
             return self.mesh.line_sides(cells)
         if not row.face:
             free = self.mesh.boundary_edges()
@@ -379,43 +379,32 @@ class Sets:
         if not match:
             shells = bool(len(cells)) and self.sided[cells].all()
             out_of_plane = shells and row.face in ("SPOS", "SNEG")
-            self.deck.error(
-                surface.card,
-                row.where,
-                f"unknown face {row.face!r}; expected {'S3 to S6' if shells else 'S1 to S4'}",
-                text=row.text,
-                hint=_SIDES if out_of_plane else "",
-            )
-            return None
+            known = "S3 to S6" if shells else "S1 to S4"
+            hint = _SIDES if out_of_plane else ""
+            row.refuse(f"unknown face {row.face!r}; expected {known}", hint)
         face = int(match.group(2)) - 1
         if match.group(1) == "E":
             # Edges of shells in Abaqus.
             face += 2
             if not self.sided[cells].all():
                 label = self.mesh.cell_labels[cells[np.argmin(self.sided[cells])]]
-                self.deck.error(
-                    surface.card,
-                    row.where,
-                    f"{row.face} is an edge of a shell; element {label} is none",
-                    text=row.text,
-                    hint="give its faces S1 to S4",
-                )
-                return None
-        return self.faces(cells, face, surface.card, row.where, row.text)
+                text = f"{row.face} is an edge of a shell; element {label} is none"
+                row.refuse(text, "give its faces S1 to S4")
+        return self.faces(cells, face, row)
 
-    def faces(self, cells: Ints, face: int, card: Card, where: Location, text: str) -> Ints | None:
-        """Edges (n, 2) of one face number (from 0, as the deck counts) of cells."""
+    def faces(self, cells: Ints, face: int, row: SurfaceRow) -> Ints:
+        """Edges (n, 2) of one face number (from 0, as the deck counts) of cells.
+
+        Raises
+        ------
+        Refused
+            After an error.
+        """
         sided = self.sided[cells]
         if sided.any() and face < 2:
             label = self.mesh.cell_labels[cells[np.argmax(sided)]]
-            self.deck.error(
-                card,
-                where,
-                f"face {face + 1} of the shell or membrane {label} is a side of its plane",
-                text=text,
-                hint=_SIDES,
-            )
-            return None
+            text = f"face {face + 1} of the shell or membrane {label} is a side of its plane"
+            row.refuse(text, _SIDES)
         face_of = np.where(sided, face - 2, face)
         side = self.side[cells]
         if (side >= 0).any():
@@ -434,23 +423,13 @@ class Sets:
             if (inside & ((face_of < 0) | (face_of >= count))).any():
                 label = self.mesh.cell_labels[cells[inside][0]]
                 if not count:
-                    self.deck.error(
-                        card,
-                        where,
+                    row.refuse(
                         f"element {label} is a line and has no faces: P1 and P2 are forces per "
                         "length of beams in Abaqus and pressures on their width in CalculiX",
-                        hint="give PX and PY, forces per length in global directions",
-                        text=text,
+                        "give PX and PY, forces per length in global directions",
                     )
-                    return None
-                self.deck.error(
-                    card,
-                    where,
-                    f"element {label} has {count} {'edges' if sided.any() else 'faces'}, and no "
-                    f"face {face + 1}",
-                    text=text,
-                )
-                return None
+                what = "edges" if sided.any() else "faces"
+                row.refuse(f"element {label} has {count} {what}, and no face {face + 1}")
             back = inside & self.turned[cells]
             edges[back, 1] = count - 1 - face_of[back]
         return edges

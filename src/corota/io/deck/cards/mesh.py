@@ -291,7 +291,7 @@ def surface(deck: Deck, card: Card) -> None:
     for row in card.rows():
         row.at_most(2)
         if row.get(0):
-            found.rows.append(SurfaceRow(row.where, row.text, row.get(0), key(row.get(1))))
+            found.rows.append(SurfaceRow(card, row.where, row.text, row.get(0), key(row.get(1))))
         else:
             row.error(0, "an element number or a set is missing")
     if not found.rows:
@@ -304,7 +304,7 @@ def _combination(card: Card, found: Surface) -> None:
     for row in card.rows():
         for index in range(len(row)):
             if row.get(index):
-                found.rows.append(SurfaceRow(row.at(index), row.text, row.get(index), ""))
+                found.rows.append(SurfaceRow(card, row.at(index), row.text, row.get(index), ""))
     if len(found.rows) < 2 or (found.combine == "DIFFERENCE" and len(found.rows) > 2):
         card.error("the names of two surfaces are expected")
 
