@@ -26,6 +26,7 @@ HELPERS = {
     "contact_case_models",
     "free_body_decks",
     "mechanisms",
+    "mutants",
     "kill_worker",
     "restart_cases",
     "same_bits",

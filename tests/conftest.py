@@ -25,8 +25,12 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Leave what was collected to the end of the process out of all later searches for garbage."""
+    """Leave what was collected to the end of the process out of all later searches for garbage.
+
+    Pytest makes objects enough for a search with every other test.
+    """
     gc.freeze()
+    gc.set_threshold(10_000, 20, 10)
     gc.enable()
 
 
