@@ -53,6 +53,14 @@ def test_from_a_singular_basis_there_is_none():
     assert from_basis(np.array([-1.0, 1.0]), m, np.array([True, False])) is None
 
 
+def test_from_a_basis_singular_to_rounding_no_wrong_solution_comes():
+    """Two equal rows whose elimination leaves a pivot of rounding."""
+    m = 1.1 * np.array([[2.0, 1.0, 1.0], [1.0, 3.0, 3.0], [1.0, 3.0, 3.0]])
+    c = np.array([-1.0, -0.3, -0.31])
+    found = from_basis(c, m, np.ones(3, bool))
+    assert found is None or np.abs(np.minimum(found[0], c + m @ found[0])).max() < 1e-9
+
+
 def friction(c, m, mu):
     """Klarbring's matrix of a contact point with pressure, traction bound and slip."""
     (a, b), (_, d) = m

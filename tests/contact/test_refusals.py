@@ -27,6 +27,14 @@ def test_unknown_surface():
         model_of().contact("nose", "low.top")
 
 
+@pytest.mark.parametrize("names", [("nose", "low.top"), ("low.top", "UP.BOTTOM")])
+@pytest.mark.parametrize("kind", [ct.ContactPair, ct.Tie])
+def test_unknown_surface_of_an_object(names, kind):
+    model = model_of()
+    (model.contacts if kind is ct.ContactPair else model.ties).append(kind(*names))
+    refused(model, r"no surface named '(nose|UP.BOTTOM)'; there are: low.bottom")
+
+
 def test_edges_inside_a_body():
     model = model_of()
     model.mesh.edge_sets["cut"] = np.array([[0, 2], [1, 2]])

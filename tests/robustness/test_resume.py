@@ -19,11 +19,13 @@ import pytest
 import corota as ct
 from benchmarks.restart_cases import DECKS, MODELS
 from benchmarks.same_bits import Takes, folder_differences, frame_differences
+from corota.analysis.procedures.static import StaticStepper
 from corota.analysis.run import solve
+from corota.analysis.state_tree import UnsuitableState
 from corota.errors import FileError
 from corota.io.checkpoint import load, newest
 from corota.io.folder_lock import FolderLock
-from support.checkpoints import goes_on
+from support.checkpoints import goes_on, whole_run
 from support.pairs import quickly
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")
@@ -123,6 +125,16 @@ QUICK = {
 @pytest.mark.parametrize("name", QUICK)
 def test_every_increment_goes_on_to_the_same_bits(name):
     goes_on(QUICK[name])
+
+
+def test_a_checkpoint_without_what_its_stepper_needs_is_refused(monkeypatch):
+    """As one of another build of the same version may be."""
+    found, _, _ = whole_run(QUICK["static"])
+    before = StaticStepper.remembered
+    monkeypatch.setattr(StaticStepper, "memory", lambda s: {n: getattr(s, n) for n in before})
+    monkeypatch.setattr(StaticStepper, "remembered", (*before, "new_number"))
+    with pytest.raises(UnsuitableState, match="it has no 'new_number'"):
+        solve(QUICK["static"](), threads=1, start=found[0])
 
 
 def test_checkpoint_of_another_model_is_refused():

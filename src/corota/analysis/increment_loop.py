@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from corota.analysis.increments import CUT, Increments
+from corota.analysis.state_tree import UnsuitableState
 from corota.errors import ConvergenceError, Interrupted
 from corota.results.observer import Iteration
 
@@ -100,6 +101,9 @@ class Stepper(ABC):
     def resume(self) -> None:
         """Take the state of a checkpoint."""
         loop = self.state.resume(self.kind, **self.memory())
+        missing = [name for name in self.remembered if name not in loop]
+        if missing:
+            raise UnsuitableState(f"it has no {missing[0]!r}")
         for name in self.remembered:
             setattr(self, name, loop[name])
 

@@ -238,7 +238,7 @@ class PressureLaw(Brief):
             raise InputError("the numbers of a pressure law must be > 0", self.where)
         try:
             _core.ContactLaw(*self.constants)
-        except ValueError as error:
+        except (TypeError, ValueError) as error:
             raise InputError(f"{self.kind} pressure law: {error}", self.where) from None
 
     @property

@@ -292,6 +292,7 @@ def paint(
 
     results = drawing.results
     mesh = results.mesh
+    ax.set_aspect("equal")
     positions = mesh.points + scale * results.frame(frame).U
     low, high = limits or drawing.range(frame)
     colors, levels = color_scale(low, high, drawing.name not in POSITIVE)

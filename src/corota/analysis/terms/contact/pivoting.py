@@ -146,7 +146,11 @@ def from_basis(c: Floats, m: Floats, start: Bools) -> tuple[Floats, Bools] | Non
         return None
     basic = start ^ found[1]
     x = np.where(start, first + turned @ found[0], found[0])
-    return np.where(basic, np.maximum(x, 0.0), 0.0), basic
+    x = np.where(basic, np.maximum(x, 0.0), 0.0)
+    # A basis that is singular to rounding has lost all digits; half of them are enough here.
+    size = np.abs(c).max() + np.abs(m).max() * x.max()
+    solved = np.abs(np.minimum(x, c + m @ x)).max() <= SAME**0.5 * size
+    return (x, basic) if solved else None
 
 
 #: Size of the linear complementarity problem: most constraints (its cost grows with the cube); a
@@ -547,7 +551,7 @@ def _sliding(c: Floats, m: Floats, kinds: list[tuple[int, int, str]]) -> Bools:
     names = np.array([kind for _, _, kind in kinds])
     forth, back = np.flatnonzero(names == "forth"), np.flatnonzero(names == "back")
     shear, by_slip = 0.5 * (c[forth] - c[back]), 0.5 * (m[forth] - m[back])[:, forth]
-    slip = -np.linalg.lstsq(by_slip, shear)[0]
+    slip = -np.linalg.lstsq(by_slip, shear, rcond=None)[0]
     out = np.zeros(len(c), bool)
     out[forth], out[back] = slip > 0.0, slip < 0.0
     return out

@@ -350,6 +350,9 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
     """
     mesh = system.model.mesh
     name = where if isinstance(where, str) else "edges"
+    if isinstance(where, str) and where not in mesh.edge_sets and where not in mesh.node_sets:
+        known = ", ".join(mesh.edge_sets) or "none"
+        raise _refused(item, f"no surface named {where!r}; there are: {known}")
     edges, single = edges_or_nodes(mesh, where)
     if len(single):
         # Without thickness, each with the area 1.

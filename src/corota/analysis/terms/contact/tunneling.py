@@ -352,8 +352,9 @@ def passed_through(model: Model, u: Floats) -> list[str]:
         deepest = int(np.argmax(depth))
         if depth[deepest] > least:
             notes.append(
-                f"contact pair {pair.name!r}: {int((depth > least).sum())} nodes that are in no "
-                f"pair {where}, node {mesh.node_labels[nodes[deepest]]} by {depth[deepest]:.3g}: "
+                f"contact pair {pair.name!r}: nodes that are in no pair {where} "
+                f"({int((depth > least).sum())} of them), "
+                f"node {mesh.node_labels[nodes[deepest]]} by {depth[deepest]:.3g}: "
                 "they passed through. Give the surfaces of the pair all edges that may meet"
             )
 
