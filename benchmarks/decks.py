@@ -39,7 +39,7 @@ def write_deck(path: Path, p: Problem, contact: str = "SURFACE TO SURFACE") -> N
         lines += ["*PLASTIC", f"{p.yield_stress:g}, 0.", f"{p.yield_stress + p.slope:g}, 1."]
     if p.name == "P4":
         lines += ["*DENSITY", f"{p.density:g}", "*AMPLITUDE, NAME=ON", "0., 1., 10., 1."]
-    # CalculiX's law is one of finite strain: Corota's is told to be.
+    # CalculiX's law is one of finite strain: Corota's is set to be one.
     strain = ", LOCAL STRAIN=LOGARITHMIC" if p.yield_stress else ""
     lines += [f"*SOLID SECTION, ELSET=EALL, MATERIAL=M{strain}", f"{p.thickness:g}"]
     if len(p.slave):

@@ -93,7 +93,7 @@ def run(count: int, seed: int) -> Counter[str]:
     slowest = 0.0
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("error")
-        # What a deck is told beside its model is no failure.
+        # Notes on a deck beside its model are no failure.
         warnings.filterwarnings("ignore", message=".*: warning: ")
         path = Path(folder) / "deck.inp"
         for number in range(count):

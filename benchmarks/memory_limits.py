@@ -148,7 +148,7 @@ def _rows(folder: Path) -> list[object]:
 
 
 def lost_frames(folder: Path, whole: Path, code: int) -> str:
-    """What of the increments that a run told of is not in its result file."""
+    """Increments that a run reported and that are not in its result file."""
     rows = folder / "job.sta"
     reported = 0
     if rows.exists():

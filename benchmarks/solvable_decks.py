@@ -8,8 +8,8 @@ types, hardening, friction, amplitudes) and the order of cards, nodes and elemen
 Each deck runs by ``corota run`` in a forked process. Decks that no iteration was made of do not
 count. Behind exit 0 no number may be missing or not finite, no recorded residual may be above its
 tolerance, nodes that nothing holds may have no reaction, reactions and loads must balance, and an
-energy balance beyond 2 % must be told. Counts are kept in ``build/solvable_decks.json``, from where
-a campaign that was ended goes on.
+energy balance beyond 2 % must be reported. Counts are kept in ``build/solvable_decks.json``, from
+where a campaign that was ended goes on.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -366,7 +366,7 @@ def _residual(results: Results, least: float) -> str:
 
 
 def _energy(results: Results, folder: Path, least: float) -> str:
-    """Whether an energy balance beyond its limit is told."""
+    """Whether an energy balance beyond its limit is reported."""
     worst = max(abs(f.scalars.get("energy balance", 0.0)) for f in results.frames)
     largest = max(_largest(f) for f in results.frames)
     if worst <= least * float(np.ptp(results.mesh.points, axis=0).max()):

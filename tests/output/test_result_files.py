@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 
 from corota.errors import CorotaError, FileError, InputError
+from corota.io import atomic_file
 from corota.io.atomic_file import AtomicFile, TextFile
 from corota.io.job import JobFiles
 from corota.io.result_reader import read_results
@@ -254,6 +255,44 @@ def test_twin_file_shows_only_committed_states(tmp_path):
         assert (tmp_path / "t").read_bytes() == shown
     twin.close()
     assert [p.name for p in tmp_path.iterdir()] == ["t"]
+
+
+@pytest.mark.parametrize("fails", ["replace", "fsync"])
+def test_a_failed_commit_of_a_twin_file_loses_nothing(tmp_path, monkeypatch, fails):
+    """Pages of it may be written again in part before the next commit."""
+    rng, image, shown, full = random.Random(5), bytearray(60_000), b"", False
+    true = getattr(os, fails)
+
+    def call(*args):
+        if full:
+            raise OSError(28, "No space left on device")
+        return true(*args)
+
+    monkeypatch.setattr(os, fails, call)
+    monkeypatch.setattr(atomic_file, "YOUNG", 0.0)
+    twin = AtomicFile(tmp_path / "t")
+    twin.write(image)
+    for number in range(40):
+        at, data = rng.randrange(len(image) - 50), rng.randbytes(rng.randrange(1, 50))
+        image[at : at + len(data)] = data
+        twin.seek(at)
+        twin.write(data)
+        full = rng.random() < 0.4
+        if full and number:
+            with pytest.raises(FileError, match="No space left"):
+                twin.commit()
+        else:
+            full = False
+            twin.commit()
+            shown = bytes(image)
+        assert (tmp_path / "t").read_bytes() == shown
+        held = bytearray(len(image))
+        twin.seek(0)
+        twin.readinto(held)
+        assert held == image
+    full = False
+    twin.commit(last=True)
+    assert (tmp_path / "t").read_bytes() == image
 
 
 def test_twin_file_without_hard_links(tmp_path, monkeypatch):

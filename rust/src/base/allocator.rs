@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicPtr, Ordering};
 
 /// Bytes kept aside.
 const SIZE: usize = 16 << 20;
-/// A larger request may fail: whoever makes it has asked before, and handles the failure.
+/// A larger request may fail: its caller has looked for the memory before, and handles the failure.
 const LARGEST: usize = SIZE / 2;
 /// Exit code of a shortage.
 const CODE: c_int = 5;

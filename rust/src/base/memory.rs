@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//! Memory that is still to be had, asked before a large piece of it is taken.
+//! Memory that is still to be had, found before a large piece of it is taken.
 //!
 //! An allocation that fails ends a Rust program at once, so the large ones are judged first: by
 //! the limit of the process, by that of its control group and by what the machine has free.
@@ -9,7 +9,7 @@ use std::fs;
 
 use super::allocator;
 
-/// Left over for everything that is not asked about: buffers, stacks of threads, the writer.
+/// Left over for everything that is not looked for: buffers, stacks of threads, the writer.
 const RESERVE: u64 = 48 << 20;
 
 /// Addresses that the heaps of two threads (the writer, the first of a pool) set aside unused.

@@ -3,7 +3,7 @@
 //! One of the places with `unsafe` code: a [`Pack`] conjures the token that proves that the
 //! processor has the instructions. It is sound because nobody outside this file can name `Pack`:
 //! a kernel meets it only as the type parameter of [`Kernel::run`], and [`dispatch`] calls that
-//! after the processor was asked.
+//! after the features of the processor were read.
 // SPDX-License-Identifier: BSD-3-Clause
 #![allow(unsafe_code)]
 

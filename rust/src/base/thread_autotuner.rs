@@ -50,7 +50,7 @@ impl ThreadAutotuner {
         self.since = if slower { 0 } else { self.since + 1 };
     }
 
-    /// Do the job; it is told whether to share its work among threads.
+    /// Do the job; its argument says whether to share its work among threads.
     pub fn run<R>(&mut self, job: impl FnOnce(bool) -> R) -> R {
         let shared = self.shared();
         let begin = Instant::now();

@@ -72,7 +72,7 @@ impl Answer {
     };
 }
 
-/// Points that a function is asked for at once.
+/// Points that one call of a function takes.
 pub struct Points<'a> {
     pub count: usize,
     /// Whether there is a strain through the thickness: a ring.

@@ -588,7 +588,7 @@ fn failures(
     failed
 }
 
-/// Do work on the pool's threads, if there is one and they help; it is told whether they do.
+/// Do work on the pool's threads, if there is one and they help; its argument says whether they do.
 fn share<R: Send>(
     tuner: &mut ThreadAutotuner,
     pool: Option<&rayon::ThreadPool>,

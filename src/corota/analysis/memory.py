@@ -36,8 +36,8 @@ def require_libraries() -> None:
         With the memory needed and available.
     """
     if "scipy.linalg" not in sys.modules:
-        asked = os.environ.get("OPENBLAS_NUM_THREADS", "")
-        threads = int(asked) if asked.isdecimal() else os.cpu_count() or 1
+        given = os.environ.get("OPENBLAS_NUM_THREADS", "")
+        threads = int(given) if given.isdecimal() else os.cpu_count() or 1
         _core.require_memory(LIBRARIES + BLAS_THREAD * threads, "the libraries of an analysis")
 
 

@@ -170,7 +170,6 @@ class AtomicFile:
                 if time.monotonic() - self._born >= YOUNG:
                     file.flush()
                     os.fsync(file.fileno())
-            self._behind, self._pages = self._pages, {}
             self._swap(last)
 
     def _swap(self, last: bool) -> None:
@@ -182,6 +181,8 @@ class AtomicFile:
             except OSError:  # a file system without hard links: the copy costs more, not safety
                 linked = False
         os.replace(self.hidden, self.path)
+        # Not before: without the exchange the visible file still needs these pages.
+        self._behind, self._pages = self._pages, {}
         if linked:
             os.replace(self._spare, self.hidden)
         elif not last:

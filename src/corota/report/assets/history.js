@@ -25,7 +25,7 @@ export class History {
     this.columns = new Map();
   }
 
-  /** A name with its unit, where that is told. */
+  /** A name with its unit, where that is known. */
   label(name) {
     return this.units[name] ? `${name} [${this.units[name]}]` : name;
   }

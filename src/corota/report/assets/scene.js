@@ -3,7 +3,7 @@
 import { DIVERGING, mapOf } from "./colors.js";
 import { extremes, fieldsOf } from "./fields.js";
 
-/** Displacements below this share of the model are enlarged unless told otherwise. */
+/** Displacements below this share of the model are enlarged unless a factor is given. */
 const SMALL = 0.01;
 /** Share of the model that enlarged displacements reach. */
 const ENLARGED = 0.1;

@@ -23,7 +23,7 @@ function panel(title, open, ...content) {
   return body.length ? el("details", { open }, el("summary", {}, title), ...body) : null;
 }
 
-/** A number with its unit, where that is told. */
+/** A number with its unit, where that is known. */
 const withUnit = (value, unit) => (unit ? `${show(value)} ${unit}` : show(value));
 
 /** Dimensions of constants of materials and of the values of loads. */

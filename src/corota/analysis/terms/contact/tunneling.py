@@ -268,17 +268,17 @@ def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
     if slave.pointwise:
         # Lines and single nodes have no outer side of their own.
         nodes, least = slave.node_list, size
-        distance, _, asked = signed_distances(pieces, x[nodes, :2], size)
+        distance, _, beside = signed_distances(pieces, x[nodes, :2], size)
     else:
         nodes, least = slave.nodes[:, 0], 0.0
         ends = x[slave.nodes[:, :2], :2]
-        distance, best, asked = signed_distances(pieces, ends.mean(axis=1), size)
+        distance, best, beside = signed_distances(pieces, ends.mean(axis=1), size)
         turned = (outward(ends) * outward(pieces)[best]).sum(axis=1)
-        asked &= np.abs(turned) >= STRAIGHT
-    nearest = int(np.argmin(np.where(asked, np.abs(distance), np.inf)))
+        beside &= np.abs(turned) >= STRAIGHT
+    nearest = int(np.argmin(np.where(beside, np.abs(distance), np.inf)))
     # An edge that faces away is behind, or in front with its back to the curve.
     away = distance[nearest] <= size if slave.pointwise else turned[nearest] >= STRAIGHT
-    if not asked[nearest] or not away:
+    if not beside[nearest] or not away:
         return
     part = part_of_nodes(mesh)
     if slave.pointwise:
