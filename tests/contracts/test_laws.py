@@ -10,7 +10,7 @@ Closed forms of uniaxial, planar, biaxial and shear states differ by law:
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,57 +18,14 @@ import pytest
 import corota as ct
 from corota.check.material import check_material
 from corota.model import elements
+from corota.model.hyperelastic import laws_of_energies
 from corota.model.materials import Material
+from support.laws import ENERGIES, LAWS
 from support.models import DRILLING, cell
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 PLANES = ("stress", "strain")
 PLANAR = [name for name in elements.names() if not elements.find(name).weighted]
 
-
-def _steel(f: float, **more: Any) -> dict[str, Any]:
-    return {"E": f * 200e3, "nu": 0.3, "yield_stress": f * 250.0, **more}
-
-
-#: Laws by their unit of stress over MPa and their unit of time over s (numbers in the new units).
-LAWS: dict[str, Callable[[float, float], Any]] = {
-    "elastic": lambda f, t: ct.Elastic(f * 200e3, 0.3),
-    "orthotropic": lambda f, t: ct.Orthotropic(f * 9e3, f * 5e3, f * 4e3, 0.3, 0.2, 0.25, f * 2e3),
-    "neo-Hooke": lambda f, t: ct.NeoHooke(f * 0.5, 0.02 / f),
-    "Mooney-Rivlin": lambda f, t: ct.MooneyRivlin(f * 0.4, f * 0.1, 0.02 / f),
-    "Yeoh": lambda f, t: ct.Yeoh(f * 0.5, f * -0.01, f * 0.002, 0.02 / f),
-    "polynomial": lambda f, t: ct.Polynomial(C10=f * 0.4, C11=f * 0.01, C02=f * 0.003, D1=0.02 / f),
-    "Ogden": lambda f, t: ct.Ogden((f * 0.5, f * 0.1), (1.5, -2.0), (0.02 / f, 0.0)),
-    "Arruda-Boyce": lambda f, t: ct.ArrudaBoyce(f * 1.0, 3.0, 0.02 / f),
-    "hyperfoam": lambda f, t: ct.Hyperfoam((f * 0.5, f * 0.1), (4.0, -2.0), (0.1, 0.3)),
-    "Mullins": lambda f, t: ct.Mullins(ct.NeoHooke(f * 0.5, 0.02 / f), 2.0, f * 0.02, 0.1),
-    "Mullins foam": lambda f, t: ct.Mullins(
-        ct.Hyperfoam((f * 0.5, f * 0.1), (4.0, -2.0), (0.1, 0.3)), 1.5, f * 0.02
-    ),
-    "Prony": lambda f, t: ct.Viscoelastic(ct.Elastic(f * 2e3, 0.38), terms=[(0.3, 0.1, 0.4 * t)]),
-    "Prony rubber": lambda f, t: ct.Viscoelastic(
-        ct.NeoHooke(f * 0.5, 0.02 / f), terms=[(0.3, 0.0, 0.4 * t)]
-    ),
-    "isotropic": lambda f, t: ct.Mises(**_steel(f, isotropic=f * 2e3)),
-    "ideal": lambda f, t: ct.Mises(**_steel(f)),
-    "combined": lambda f, t: ct.Mises(
-        **_steel(f, isotropic=f * 500.0, kinematic=f * 1e3, chaboche=[(f * 5e3, 50.0)])
-    ),
-    "Cowper-Symonds": lambda f, t: ct.Mises(
-        **_steel(f, isotropic=f * 2e3, rate=ct.CowperSymonds(40.0 / t, 5.0))
-    ),
-    "Norton": lambda f, t: ct.Mises(f * 200e3, 0.3, rate=ct.Norton(1e-14 / f**5 / t, 5.0)),
-    "Johnson-Cook": lambda f, t: ct.JohnsonCook(
-        E=f * 200e3, nu=0.3, A=f * 350.0, B=f * 275.0, n=0.36, C=0.022, rate=1.0 / t
-    ),
-    "Ramberg-Osgood": lambda f, t: ct.RambergOsgood(f * 200e3, 0.3, f * 250.0, 8.0, 0.4),
-    "Hill": lambda f, t: ct.Hill(**_steel(f, isotropic=f * 2e3, R22=1.1, R33=0.9, R12=1.05)),
-    "Hill combined": lambda f, t: ct.Hill(
-        **_steel(f, isotropic=f * 500.0, kinematic=f * 1e3, R22=1.1, R33=0.9, R12=1.05)
-    ),
-}
 #: Strain that loads a law well: that of rubber is large.
 STRAIN = {name: 0.2 if make(1.0, 1.0).local_strain else 0.01 for name, make in LAWS.items()}
 #: Laws with axes of their own, and those without an answer at a single point.
@@ -168,3 +125,4 @@ def test_every_public_law_is_here() -> None:
         if issubclass(found, Material)
     }
     assert public - names == {"CompiledMaterial", "MaterialTable", "Umat", "UserMaterial"}
+    assert ENERGIES.keys() == set(laws_of_energies())

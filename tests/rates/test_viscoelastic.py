@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 
 import corota as ct
 from corota.verification.plastic_models import CELL
+from support.laws import RUBBER
 
 E, NU = 1000.0, 0.3
 G, K = E / 2.6, E / 1.2
@@ -22,10 +23,10 @@ LAWS: dict[str, ct.Viscoelastic] = {
     "elastic": ct.Viscoelastic(ELASTIC, TERMS),
     "long term": ct.Viscoelastic(ELASTIC, TERMS, "long term"),
     "shifted": ct.Viscoelastic(ELASTIC, TERMS, shift=ct.WLF(17.4, 51.6, 20.0), temperature=26.0),
-    "Mooney-Rivlin": ct.Viscoelastic(ct.MooneyRivlin(C10=0.4, C01=0.1, D1=0.1), TERMS),
-    "Ogden": ct.Viscoelastic(ct.Ogden(mu=(0.5, 0.1), alpha=(1.5, -2.0), D=(0.2, 0.1)), TERMS),
-    "Arruda-Boyce": ct.Viscoelastic(ct.ArrudaBoyce(mu=1.0, limit=3.0, D=0.1), TERMS),
-    "foam": ct.Viscoelastic(ct.Hyperfoam(mu=0.5, alpha=4.0, nu=0.2), EQUAL),
+    **{
+        name: ct.Viscoelastic(law, EQUAL if isinstance(law, ct.Hyperfoam) else TERMS)
+        for name, law in RUBBER.items()
+    },
     "incompressible": ct.Viscoelastic(ct.NeoHooke(C10=0.5), [(0.4, 0.0, 0.3)]),
 }
 #: Increments to a time of 107.4, coarse and fine.

@@ -7,16 +7,9 @@ import numpy as np
 import pytest
 
 import corota as ct
+from support.laws import RUBBER
 
-LAWS = [
-    ct.NeoHooke(C10=170.0, D1=0.004),
-    ct.MooneyRivlin(C10=100.0, C01=70.0, D1=0.004),
-    ct.Yeoh(C10=170.0, C20=20.0, C30=5.0, D1=0.004),
-    ct.Ogden(mu=[300.0, 40.0], alpha=[2.0, -2.0], D=[0.004, 0.0]),
-    ct.ArrudaBoyce(mu=300.0, limit=3.0, D=0.004),
-    ct.Hyperfoam(mu=[300.0], alpha=[6.0], nu=[0.2]),
-    ct.Hyperfoam(mu=[300.0], alpha=[6.0], nu=[0.0]),
-]
+LAWS = [*RUBBER.values(), ct.Hyperfoam(mu=[300.0], alpha=[6.0], nu=[0.0])]
 SIZE = 1e-6
 
 
