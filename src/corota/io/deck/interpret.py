@@ -23,10 +23,10 @@ from corota.io.deck.refused import (
 def interpret(deck: Deck, card: Card) -> None:
     """Read one card into the deck."""
     card.deck, card.scope = deck, deck.scope
-    entry = KEYWORDS.get(card.keyword)
-    if entry is None:
+    if card.keyword not in KEYWORDS:
         _unknown(deck, card)
         return
+    entry = KEYWORDS[card.keyword]
     known = set(entry.parameters.split())
     ignored = set(entry.ignored.split())
     refused = {

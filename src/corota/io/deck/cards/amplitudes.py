@@ -11,6 +11,7 @@ import numpy as np
 
 from corota.io.deck.amplitudes import Curve, smooth_steps
 from corota.io.deck.card import Card, Refused, complete, key
+from corota.io.deck.keywords import keyword
 from corota.model.loads import Amplitude
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ ENDLESS = {
 }
 
 
+@keyword("AMPLITUDE", "NAME TIME SHIFTX SHIFTY DEFINITION VALUE FIXEDINTERVAL BEGIN", "SMOOTH")
 def amplitude(deck: Deck, card: Card) -> None:
     """``*AMPLITUDE, NAME=[, DEFINITION=]``: pairs of time and factor, or the curve's numbers."""
     name = card.required("NAME")
@@ -105,6 +107,7 @@ def _endless(card: Card, kind: str) -> list[float]:
     return numbers + pairs
 
 
+@keyword("TIME POINTS", "NAME TIME GENERATE")
 def time_points(deck: Deck, card: Card) -> None:
     """``*TIME POINTS, NAME=[, GENERATE]``: times at which output is written."""
     name = card.required("NAME")

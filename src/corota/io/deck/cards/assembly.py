@@ -8,8 +8,10 @@ import math
 from corota.io.deck.card import Card, key, nearest
 from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import Instance, Scope
+from corota.io.deck.keywords import keyword
 
 
+@keyword("PART", "NAME", place="model")
 def part(deck: Deck, card: Card) -> None:
     """``*PART, NAME=``: a name space of its own until ``*END PART``."""
     name = card.required("NAME")
@@ -22,6 +24,7 @@ def part(deck: Deck, card: Card) -> None:
     deck.scope = deck.parts.setdefault(key(name), Scope(name))
 
 
+@keyword("END PART", place="model")
 def end_part(deck: Deck, card: Card) -> None:
     """``*END PART``."""
     card.no_rows()
@@ -37,6 +40,7 @@ def close_part(deck: Deck) -> None:
         deck.scope = deck.root
 
 
+@keyword("ASSEMBLY", "NAME", place="model")
 def assembly(deck: Deck, card: Card) -> None:
     """``*ASSEMBLY, NAME=``."""
     card.no_rows()
@@ -46,6 +50,7 @@ def assembly(deck: Deck, card: Card) -> None:
     deck.in_assembly = True
 
 
+@keyword("END ASSEMBLY", place="model")
 def end_assembly(deck: Deck, card: Card) -> None:
     """``*END ASSEMBLY``."""
     card.no_rows()
@@ -54,6 +59,7 @@ def end_assembly(deck: Deck, card: Card) -> None:
     deck.in_assembly = False
 
 
+@keyword("INSTANCE", "NAME PART", place="model")
 def instance(deck: Deck, card: Card) -> None:
     """``*INSTANCE, NAME=, PART=``: shift, then a turn about an axis normal to the plane.
 
@@ -89,6 +95,7 @@ def instance(deck: Deck, card: Card) -> None:
     deck.scope = found.scope
 
 
+@keyword("END INSTANCE", place="model")
 def end_instance(deck: Deck, card: Card) -> None:
     """``*END INSTANCE``."""
     card.no_rows()

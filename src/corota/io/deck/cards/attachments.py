@@ -13,6 +13,7 @@ from corota.io.deck.card import Card, Refused, Row, complete, key, nearest
 from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import PLANAR, AttachedDraft, Draft
 from corota.io.deck.elements import ATTACHED
+from corota.io.deck.keywords import keyword
 from corota.lazy import lazy
 from corota.model.attachments import Dashpot, PointMass
 from corota.model.contact import gap_element
@@ -60,17 +61,20 @@ def elements(deck: Deck, card: Card, type_: str) -> None:
         deck.attached.append(draft)
 
 
+@keyword("MASS", "ELSET", place="model")
 def mass(deck: Deck, card: Card) -> None:
     """``*MASS, ELSET=``: the mass at each node of the set."""
     _later(deck, card, lambda: _value(deck, card, "MASS", "the mass"))
 
 
+@keyword("ROTARY INERTIA", "ELSET", place="model")
 def rotary_inertia(deck: Deck, card: Card) -> None:
     """``*ROTARY INERTIA, ELSET=``: I11, I22 and that about the normal of the plane, I33."""
     what = "the inertia about the normal of the plane"
     _later(deck, card, lambda: _value(deck, card, "ROTARYI", what, 2))
 
 
+@keyword("DASHPOT", "ELSET NONLINEAR", "RTOL REGULARIZE", place="model")
 def dashpot(deck: Deck, card: Card) -> None:
     """``*DASHPOT, ELSET=[, NONLINEAR]``: an empty line or dofs; force per velocity, or a table."""
     _later(deck, card, lambda: _dashpot(deck, card))
@@ -148,6 +152,7 @@ def _value(deck: Deck, card: Card, type_: str, what: str, place: int = 0) -> Non
         _assign(deck, card, type_, (value,))
 
 
+@keyword("GAP", "ELSET", place="model")
 def gap(deck: Deck, card: Card) -> None:
     """``*GAP, ELSET=``: clearance, direction from the first node to the second.
 

@@ -28,6 +28,7 @@ from corota.io.deck.drafts import (
     NamedSet,
 )
 from corota.io.deck.elements import LINE_ELEMENTS
+from corota.io.deck.keywords import keyword
 from corota.model.constraints import Coupling, Equation
 from corota.model.contact import gap_element
 from corota.model.loads import Fixed
@@ -69,6 +70,7 @@ FREE |= {"CARTESIAN, ALIGN": (1, 2), "AXIAL, ALIGN": (1,)}
 CLOSE = 1e-6
 
 
+@keyword("CONNECTOR SECTION", "ELSET BEHAVIOR", "CONTROLS", place="model")
 def connector_section(deck: Deck, card: Card) -> None:
     """``*CONNECTOR SECTION, ELSET=[, BEHAVIOR=]``: kinds; orientation of the first node."""
     if card.required("ELSET"):
@@ -87,6 +89,7 @@ def link(deck: Deck, card: Card, row: Row) -> None:
     deck.connectors.append(draft.connector)
 
 
+@keyword("CONNECTOR BEHAVIOR", "NAME", "INTEGRATION EXTRAPOLATION", place="model")
 def connector_behavior(deck: Deck, card: Card) -> None:
     """``*CONNECTOR BEHAVIOR, NAME=``: opens a behavior."""
     card.no_rows()
@@ -97,6 +100,12 @@ def connector_behavior(deck: Deck, card: Card) -> None:
     deck.behaviors[key(name)] = deck.behavior
 
 
+@keyword(
+    "CONNECTOR ELASTICITY",
+    "COMPONENT NONLINEAR RIGID",
+    "REGULARIZE RTOL EXTRAPOLATION",
+    place="model",
+)
 def connector_elasticity(deck: Deck, card: Card) -> None:
     """``*CONNECTOR ELASTICITY, COMPONENT=[, NONLINEAR][, RIGID]``: stiffness, or force and way."""
     into = _behavior(deck, card)
@@ -115,6 +124,9 @@ def connector_elasticity(deck: Deck, card: Card) -> None:
     into.elastic[component] = rows
 
 
+@keyword(
+    "CONNECTOR DAMPING", "COMPONENT NONLINEAR", "TYPE REGULARIZE RTOL EXTRAPOLATION", place="model"
+)
 def connector_damping(deck: Deck, card: Card) -> None:
     """``*CONNECTOR DAMPING, COMPONENT=[, NONLINEAR]``: damping, or force and velocity."""
     into = _behavior(deck, card)
@@ -123,6 +135,7 @@ def connector_damping(deck: Deck, card: Card) -> None:
     into.damped[_component(card)] = card
 
 
+@keyword("CONNECTOR STOP", "COMPONENT", "REGULARIZE", place="model")
 def connector_stop(deck: Deck, card: Card) -> None:
     """``*CONNECTOR STOP, COMPONENT=``: smallest, largest relative position."""
     rows, into, component = list(card.rows()), _behavior(deck, card), _component(card)
@@ -137,12 +150,14 @@ def connector_stop(deck: Deck, card: Card) -> None:
     into.stops[component] = (low, high)
 
 
+@keyword("CONNECTOR MOTION", "AMPLITUDE OP TYPE", place="step")
 def connector_motion(deck: Deck, card: Card) -> None:
     """``*CONNECTOR MOTION[, TYPE=]``: element or set, component, value."""
     order = RATES[card.choice("TYPE", RATES, "DISPLACEMENT")]
     _drive(deck, card, "fixed", order)
 
 
+@keyword("CONNECTOR LOAD", "AMPLITUDE OP", place="step")
 def connector_load(deck: Deck, card: Card) -> None:
     """``*CONNECTOR LOAD``: element or set, component, force or moment."""
     _drive(deck, card, "force", 0)

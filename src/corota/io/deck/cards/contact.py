@@ -13,6 +13,7 @@ from corota.io.deck import numerals
 from corota.io.deck.card import Card, Refused, Row, complete, key, nearest
 from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import Draft, InteractionDraft, PairDraft, StepDraft, Surface
+from corota.io.deck.keywords import keyword
 from corota.model.friction import MOST_FRICTION, DecayingFriction, Friction, FrictionTable
 
 #: Types of contact pairs of CalculiX and Abaqus, and the discretization here.
@@ -74,6 +75,12 @@ def _sweep(
     return turn
 
 
+@keyword(
+    "CONTACT PAIR",
+    "INTERACTION TYPE ADJUST SMALLSLIDING SMOOTH TIED",
+    "EXTENSIONZONE HCRIT TRACKING NOTHICKNESS SUPPLEMENTARYCONSTRAINTS OP WEIGHT CPSET "
+    "MECHANICALCONSTRAINT GEOMETRICCORRECTION MINIMUMDISTANCE",
+)
 def contact_pair(deck: Deck, card: Card) -> None:
     """``*CONTACT PAIR, INTERACTION=, TYPE=[, ADJUST=][, SMOOTH=]``: slave, master."""
     interaction = card.required("INTERACTION")
@@ -108,6 +115,7 @@ def begins_in(pair: PairDraft, step: int) -> None:
         pair.changes = {0: False, step: True}
 
 
+@keyword("TIE", "NAME POSITIONTOLERANCE ADJUST", "TYPE NOROTATION NOTHICKNESS", place="model")
 def tie(deck: Deck, card: Card) -> None:
     """``*TIE, NAME=[, POSITION TOLERANCE=][, ADJUST=NO]``: slave, master."""
     tolerance = card.number("POSITIONTOLERANCE", 0.0, 0.0)
@@ -132,6 +140,12 @@ def _pair_rows(card: Card) -> list[Row]:
     return [row for row in rows if row.get(0)]
 
 
+@keyword(
+    "SURFACE INTERACTION",
+    "NAME",
+    "DEPVAR PROPERTIES UNSYMM PADTHICKNESS TRACKINGTHICKNESS",
+    place="model",
+)
 def surface_interaction(deck: Deck, card: Card) -> None:
     """``*SURFACE INTERACTION, NAME=``: opens an interaction; a data line is a thickness."""
     name = card.required("NAME")
@@ -159,6 +173,9 @@ def _changed(deck: Deck, card: Card, change: str) -> InteractionDraft:
     return old
 
 
+@keyword(
+    "SURFACE BEHAVIOR", "PRESSURE-OVERCLOSURE NOSEPARATION", "AUGMENTEDLAGRANGE DIRECT PENALTY"
+)
 def surface_behavior(deck: Deck, card: Card) -> None:
     """``*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=``: pressure against overclosure."""
     if deck.step is None:
@@ -202,6 +219,7 @@ def surface_behavior(deck: Deck, card: Card) -> None:
         card.note("the pressure is zero at the clearance c0, as in Abaqus (CalculiX: 1 % of p0)")
 
 
+@keyword("CONTACT DAMPING", "DEFINITION", "TANGENTFRACTION", place="model")
 def contact_damping(deck: Deck, card: Card) -> None:
     """``*CONTACT DAMPING``: without effect in steps without velocities, and on hard contact."""
     into = _open(deck, card)
@@ -209,6 +227,7 @@ def contact_damping(deck: Deck, card: Card) -> None:
     into.damping = card
 
 
+@keyword("CHANGE SURFACE BEHAVIOR", "INTERACTION")
 def change_surface_behavior(deck: Deck, card: Card) -> None:
     """``*CHANGE SURFACE BEHAVIOR, INTERACTION=``: the law below it holds from this step."""
     deck.changed = _to_change(deck, card)
@@ -228,6 +247,7 @@ def _to_change(deck: Deck, card: Card) -> InteractionDraft | None:
     return found
 
 
+@keyword("CHANGE FRICTION", "INTERACTION RESET RAMP")
 def change_friction(deck: Deck, card: Card) -> None:
     """``*CHANGE FRICTION, INTERACTION=[, RESET]``: ``*FRICTION`` below it holds from this step."""
     deck.changed = None
@@ -241,6 +261,11 @@ def change_friction(deck: Deck, card: Card) -> None:
             deck.changed = found
 
 
+@keyword(
+    "FRICTION",
+    "ROUGH TAUMAX EXPONENTIALDECAY",
+    "SLIPTOLERANCE LAGRANGE ELASTICSLIP SHEARTRACTIONSLOPE",
+)
 def friction(deck: Deck, card: Card) -> None:
     """``*FRICTION``: coefficient, stick slope; more lines, ``EXPONENTIAL DECAY``: one that varies.
 
@@ -305,6 +330,7 @@ def _coefficient(card: Card, rows: list[Row]) -> Friction:
     return mu
 
 
+@keyword("MODEL CHANGE", "TYPE ADD REMOVE ACTIVATE")
 def model_change(deck: Deck, card: Card) -> None:
     """``*MODEL CHANGE, TYPE=CONTACT PAIR or ELEMENT, ADD or REMOVE``: pairs, or elements."""
     kind = card.choice("TYPE", ("CONTACTPAIR", "ELEMENT"), "ELEMENT")
@@ -337,6 +363,7 @@ def _change_elements(step: StepDraft, card: Card, added: bool) -> None:
             step.element_changes.append(Draft("cells", row, name, (), ways[way] if added else 0))
 
 
+@keyword("CLEARANCE", "SLAVE MASTER VALUE", place="model")
 def clearance(deck: Deck, card: Card) -> None:
     """``*CLEARANCE, SLAVE=, MASTER=, VALUE=``: gap at the start."""
     card.no_rows()
@@ -346,6 +373,13 @@ def clearance(deck: Deck, card: Card) -> None:
             pair.clearance = value
 
 
+@keyword(
+    "CONTACT CONTROLS",
+    "STABILIZE SLAVE MASTER",
+    "RESET AUTOMATICTOLERANCES APPROACH MAXCHP PERRMX UERRMX FRICTIONONSET TANGENTFRACTION "
+    "LAGRANGEMULTIPLIER ABSOLUTEPENETRATIONTOLERANCE RELATIVEPENETRATIONTOLERANCE "
+    "STIFFNESSSCALEFACTOR TYPE CPSET FASTLOCALTRK GLOBTRKINC SCALEPENALTY WARP",
+)
 def contact_controls(deck: Deck, card: Card) -> None:
     """``*CONTACT CONTROLS, STABILIZE[, SLAVE=, MASTER=]``: damp bodies without other supports."""
     if not card.has("STABILIZE"):
@@ -364,6 +398,7 @@ def contact_controls(deck: Deck, card: Card) -> None:
         pair.stabilize = pair.stabilize or first
 
 
+@keyword("CONTACT INTERFERENCE", "SHRINK", "TYPE OP")
 def contact_interference(deck: Deck, card: Card) -> None:
     """``*CONTACT INTERFERENCE, SHRINK``: slave, master whose overlap is removed slowly."""
     if not card.has("SHRINK"):

@@ -11,6 +11,7 @@ import numpy as np
 from corota.io.deck.card import Card, Refused, Row, key, nearest
 from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import DistributionDraft
+from corota.io.deck.keywords import keyword
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     Read = Callable[[Row, int], float]
 
 
+@keyword("DISTRIBUTION", "NAME LOCATION TABLE", place="model")
 def distribution(deck: Deck, card: Card) -> None:
     """``*DISTRIBUTION, NAME=, LOCATION=ELEMENT``: default; element or set, values."""
     name = card.required("NAME")
@@ -36,6 +38,7 @@ def distribution(deck: Deck, card: Card) -> None:
         deck.scope.distributions[key(name)] = DistributionDraft(name, card, rows)
 
 
+@keyword("DISTRIBUTION TABLE", "NAME", place="model")
 def distribution_table(deck: Deck, card: Card) -> None:
     """``*DISTRIBUTION TABLE``: kinds of the values, which follow from where they are used."""
 

@@ -11,6 +11,7 @@ from corota.io.deck.cards.step import keeps_preload, open_procedure, open_step, 
 from corota.io.deck.cards.supports import RATES
 from corota.io.deck.cards.thermal import initial_stress, initial_temperature
 from corota.io.deck.drafts import PLANAR, Draft, MaterialDraft, StepDraft
+from corota.io.deck.keywords import keyword
 from corota.lazy import lazy
 from corota.model.loads import InitialVelocity
 from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
@@ -47,6 +48,12 @@ def _grows(now: StepDraft) -> bool:
     return now.card.has("AMPLITUDE") and now.ramp
 
 
+@keyword(
+    "DYNAMIC",
+    "ALPHA BETA GAMMA DIRECT DIRECTUSERCONTROL EXPLICIT APPLICATION TIMEINTEGRATOR SCHEME NOHAF",
+    "SOLVER RELATIVETOABSOLUTE HAFTOL HALFINCSCALEFACTOR INITIAL IMPACT SCALEFACTOR "
+    "ELEMENTBYELEMENT INCREMENTATION ADIABATIC IMPROVEDDTMETHOD FIXEDTIMEINCREMENTATION",
+)
 def dynamic(deck: Deck, card: Card) -> None:
     """``*DYNAMIC[, ALPHA=][, DIRECT][, EXPLICIT]``: increment, period, smallest, largest."""
     now = open_procedure(deck, card)
@@ -104,6 +111,7 @@ def dynamic(deck: Deck, card: Card) -> None:
         now.times = (min(first, period), period, least, most)
 
 
+@keyword("COMPLEX FREQUENCY", "CORIOLIS", "SOLVER STORAGE")
 def complex_frequency(deck: Deck, card: Card) -> None:
     """``*COMPLEX FREQUENCY[, CORIOLIS]``: the number of modes, with damping and Coriolis forces."""
     now, whole = frequency(deck, card), {"lowest": 0.0, "highest": math.inf}
@@ -112,6 +120,11 @@ def complex_frequency(deck: Deck, card: Card) -> None:
     now.options.update(complex_modes=True, rayleigh=deck.damping, **whole)
 
 
+@keyword(
+    "FREQUENCY",
+    ignored="SOLVER STORAGE EIGENSOLVER NORMALIZATION ACOUSTICCOUPLING RESIDUALMODES "
+    "NUMBERINTERVAL SIM BIAS DAMPINGPROJECTION",
+)
 def frequency(deck: Deck, card: Card) -> StepDraft:
     """``*FREQUENCY``: the number of modes, the lowest and the highest frequency."""
     now = open_procedure(deck, card)
@@ -131,6 +144,7 @@ def frequency(deck: Deck, card: Card) -> StepDraft:
     return now
 
 
+@keyword("MODAL DYNAMIC", ignored="SOLVER DIRECT")
 def modal_dynamic(deck: Deck, card: Card) -> None:
     """``*MODAL DYNAMIC``: increment and period."""
     now = open_procedure(deck, card)
@@ -141,6 +155,7 @@ def modal_dynamic(deck: Deck, card: Card) -> None:
     step_times(card, now)
 
 
+@keyword("STEADY STATE DYNAMICS", "DIRECT", "SOLVER FREQUENCYSCALE INTERVAL FRICTIONDAMPING")
 def steady_state(deck: Deck, card: Card) -> None:
     """``*STEADY STATE DYNAMICS[, DIRECT]``: range, points between modes, bias."""
     now = open_procedure(deck, card)
@@ -161,6 +176,7 @@ def steady_state(deck: Deck, card: Card) -> None:
     now.options |= {"rayleigh": deck.damping, "ramp": False, "direct": card.has("DIRECT")}
 
 
+@keyword("BASE MOTION", "DOF AMPLITUDE TYPE SCALE LOADCASE", "BASENAME")
 def base_motion(deck: Deck, card: Card) -> None:
     """``*BASE MOTION, DOF=, AMPLITUDE=[, TYPE=][, SCALE=]``: all supports of a direction move."""
     now = open_step(deck, card)
@@ -182,6 +198,7 @@ def base_motion(deck: Deck, card: Card) -> None:
         now.base_motions.append(draft)
 
 
+@keyword("MODAL DAMPING", "RAYLEIGH VISCOUS DEFINITION", "MODAL")
 def modal_damping(deck: Deck, card: Card) -> None:
     """``*MODAL DAMPING[, RAYLEIGH]``: share of critical damping, or alpha and beta."""
     now = open_step(deck, card)
@@ -205,6 +222,7 @@ def modal_damping(deck: Deck, card: Card) -> None:
             now.options.setdefault("damping", []).append((first, last, share))
 
 
+@keyword("DAMPING", "ALPHA BETA")
 def damping(deck: Deck, card: Card) -> None:
     """``*DAMPING, ALPHA=, BETA=``: Rayleigh damping of a material, or of the whole model."""
     value = _rayleigh(card)
@@ -231,6 +249,7 @@ def _rayleigh(card: Card) -> tuple[float, float]:
     return card.number("ALPHA", 0.0, 0.0), card.number("BETA", 0.0, 0.0)
 
 
+@keyword("GLOBAL DAMPING", "ALPHA BETA", "FIELD")
 def global_damping(deck: Deck, card: Card) -> None:
     """``*GLOBAL DAMPING, ALPHA=, BETA=``: Rayleigh damping of a linear dynamic step."""
     now, value = open_step(deck, card), _rayleigh(card)
@@ -240,6 +259,7 @@ def global_damping(deck: Deck, card: Card) -> None:
     now.options["rayleigh"] = value
 
 
+@keyword("INITIAL CONDITIONS", "TYPE", "VARIABLE", place="model")
 def initial_conditions(deck: Deck, card: Card) -> None:
     """``*INITIAL CONDITIONS, TYPE=``: velocities, temperatures or stresses."""
     kind = card.choice("TYPE", INITIAL, "")

@@ -10,6 +10,7 @@ import numpy as np
 
 from corota.io.deck.build.mesh import views_in
 from corota.io.deck.drafts import Draft
+from corota.io.deck.keywords import keyword
 from corota.mesh.kinds import PLANAR
 from corota.mesh.parts import nodes_of_cells
 from corota.mesh.shape_functions import shape_functions, shape_gradients
@@ -37,6 +38,12 @@ class EmbeddedDraft:
     targets: list[Draft] = field(default_factory=list)
 
 
+@keyword(
+    "EMBEDDED ELEMENT",
+    "HOSTELSET EXTERIORTOLERANCE",
+    "ROUNDOFFTOLERANCE ABSOLUTEEXTERIORTOLERANCE",
+    place="model",
+)
 def embedded_element(deck: Deck, card: Card) -> None:
     """``*EMBEDDED ELEMENT[, HOST ELSET=][, EXTERIOR TOLERANCE=]``: sets of elements."""
     draft = EmbeddedDraft(card, card.value("HOSTELSET"))

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 from corota.io.deck.card import Card, key
 from corota.io.deck.drafts import GeneralDraft, StartDraft
+from corota.io.deck.keywords import keyword
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
 
 
+@keyword("CONTACT", ignored="OP")
 def general(deck: Deck, card: Card) -> None:
     """``*CONTACT``: opens general contact; its pairs are those of the cards below it."""
     card.no_rows()
@@ -24,6 +26,7 @@ def general(deck: Deck, card: Card) -> None:
     deck.general = GeneralDraft(card, step=len(deck.steps))
 
 
+@keyword("CONTACT INCLUSIONS", "ALLEXTERIOR")
 def inclusions(deck: Deck, card: Card) -> None:
     """``*CONTACT INCLUSIONS[, ALL EXTERIOR]``: what touches; a blank stands for all surfaces."""
     into = _general(deck, card)
@@ -41,6 +44,7 @@ def inclusions(deck: Deck, card: Card) -> None:
             (into.pairs if row.get(0) else into.included).append(row)
 
 
+@keyword("CONTACT EXCLUSIONS")
 def exclusions(deck: Deck, card: Card) -> None:
     """``*CONTACT EXCLUSIONS``: two surfaces that do not touch; one alone does not touch itself."""
     into = _general(deck, card)
@@ -52,6 +56,7 @@ def exclusions(deck: Deck, card: Card) -> None:
             into.excluded.append(row)
 
 
+@keyword("CONTACT PROPERTY ASSIGNMENT")
 def property_assignment(deck: Deck, card: Card) -> None:
     """``*CONTACT PROPERTY ASSIGNMENT``: two surfaces, interaction; two blanks for all surfaces."""
     into = _general(deck, card)
@@ -63,6 +68,12 @@ def property_assignment(deck: Deck, card: Card) -> None:
             into.interaction, into.where = row.get(2), row.at(2)
 
 
+@keyword(
+    "CONTACT INITIALIZATION DATA",
+    "NAME INTERFERENCE SEARCHABOVE INITIALCLEARANCE",
+    "SEARCHBELOW",
+    place="model",
+)
 def initialization_data(deck: Deck, card: Card) -> None:
     """``*CONTACT INITIALIZATION DATA, NAME=``: overlaps removed without strain, or an interference.
 
@@ -82,6 +93,7 @@ def initialization_data(deck: Deck, card: Card) -> None:
         deck.starts[key(name)] = draft
 
 
+@keyword("CONTACT INITIALIZATION ASSIGNMENT")
 def initialization_assignment(deck: Deck, card: Card) -> None:
     """``*CONTACT INITIALIZATION ASSIGNMENT``: two surfaces, name of the data."""
     into = _general(deck, card)
@@ -94,6 +106,13 @@ def initialization_assignment(deck: Deck, card: Card) -> None:
             into.starts.append(row)
 
 
+@keyword("CONTACT FORMULATION", "TYPE")
+@keyword(
+    "CONTACT CONTROLS ASSIGNMENT",
+    "TYPE CONTACTTHICKNESSREDUCTION AUTOMATICOVERCLOSURERESOLUTION NODALEROSION "
+    "SCALEPENALTY STABILIZE SEEDONLY",
+)
+@keyword("SURFACE PROPERTY ASSIGNMENT", "PROPERTY")
 def formulation(deck: Deck, card: Card) -> None:
     """``*CONTACT FORMULATION``, ``*SURFACE PROPERTY ASSIGNMENT``: control of general contact."""
     _general(deck, card)

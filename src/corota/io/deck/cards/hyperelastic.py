@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from corota.errors import InputError
 from corota.io.deck.cards.material import constants, moduli, open_material
+from corota.io.deck.keywords import keyword
 from corota.model import hyperelastic as rubber
 from corota.model.mullins import Mullins
 
@@ -32,6 +33,12 @@ MOST = {"POLYNOMIAL": 3, "REDUCEDPOLYNOMIAL": 3, "OGDEN": rubber.MAX_TERMS}
 MOST["HYPERFOAM"] = rubber.MAX_TERMS
 
 
+@keyword(
+    "HYPERELASTIC",
+    "NEOHOOKE MOONEY-RIVLIN YEOH ARRUDA-BOYCE POLYNOMIAL REDUCEDPOLYNOMIAL OGDEN N "
+    "TESTDATAINPUT POISSON MODULI",
+    place="model",
+)
 def hyperelastic(deck: Deck, card: Card) -> None:
     """``*HYPERELASTIC, kind[, N=][, TEST DATA INPUT[, POISSON=]]``."""
     given = [kind for kind in CLASSES if card.has(kind)]
@@ -40,6 +47,7 @@ def hyperelastic(deck: Deck, card: Card) -> None:
     _law(deck, card, given[0] if given else "POLYNOMIAL")
 
 
+@keyword("HYPERFOAM", "N TESTDATAINPUT POISSON MODULI", place="model")
 def hyperfoam(deck: Deck, card: Card) -> None:
     """``*HYPERFOAM[, N=][, TEST DATA INPUT[, POISSON=]]``."""
     _law(deck, card, "HYPERFOAM")
@@ -66,7 +74,10 @@ def _law(deck: Deck, card: Card, kind: str) -> None:
     found.fit = (kind, count, ratio)
 
 
-def test_data(deck: Deck, card: Card, test: str) -> None:
+@keyword("UNIAXIAL TEST DATA", place="model")
+@keyword("BIAXIAL TEST DATA", place="model")
+@keyword("PLANAR TEST DATA", place="model")
+def test_data(deck: Deck, card: Card) -> None:
     """``*UNIAXIAL TEST DATA``, ``*BIAXIAL ...``, ``*PLANAR ...``: nominal stress and strain."""
     found = open_material(deck, card)
     rows = []
@@ -79,9 +90,10 @@ def test_data(deck: Deck, card: Card, test: str) -> None:
     elif found.fit is None:
         card.error("test data belong below *HYPERELASTIC or *HYPERFOAM with TEST DATA INPUT")
     else:
-        found.tests.setdefault(test, []).extend(rows)
+        found.tests.setdefault(card.keyword.removesuffix("TESTDATA").lower(), []).extend(rows)
 
 
+@keyword("MULLINS EFFECT", place="model")
 def mullins_effect(deck: Deck, card: Card) -> None:
     """``*MULLINS EFFECT``: r, m and beta of the softening of the open hyperelastic material."""
     found = open_material(deck, card)

@@ -13,6 +13,7 @@ from corota.arrays import Lookup
 from corota.errors import FileError
 from corota.io.deck.card import Card, Refused, Row
 from corota.io.deck.drafts import Draft
+from corota.io.deck.keywords import keyword
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -40,6 +41,7 @@ class ImperfectionDraft:
     moves: list[Draft] = field(default_factory=list)
 
 
+@keyword("IMPERFECTION", "FILE STEP INC NSET SYSTEM", place="model")
 def imperfection(deck: Deck, card: Card) -> None:
     """``*IMPERFECTION, FILE=, STEP=[, INC=][, NSET=]``: mode, factor; or node or set, x, y."""
     card.choice("SYSTEM", ("R",), "R")

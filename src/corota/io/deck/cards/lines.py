@@ -15,6 +15,7 @@ from corota.errors import InputError
 from corota.io.deck.card import Card, Refused, Row, key
 from corota.io.deck.drafts import PLANAR, LineDraft, SectionDraft
 from corota.io.deck.elements import LINE_ELEMENTS
+from corota.io.deck.keywords import keyword
 from corota.model.materials import Elastic, Material
 from corota.model.sections import Section
 
@@ -71,6 +72,12 @@ def _common(card: Card, most: int) -> list[Row]:
     return rows
 
 
+@keyword(
+    "BEAM SECTION",
+    "ELSET MATERIAL SECTION OFFSET1 OFFSET2 TEMPERATURE POISSON",
+    "LUMP ROTARYINERTIA CONTROLS ORIENTATION",
+    place="model",
+)
 def beam_section(deck: Deck, card: Card) -> None:
     """``*BEAM SECTION, ELSET=, MATERIAL=, SECTION=RECT, CIRC or PIPE``: sizes; first axis."""
     elset, material = card.required("ELSET"), card.required("MATERIAL")
@@ -178,6 +185,12 @@ def _profile(deck: Deck, row: Row, kind: str, normal: float) -> Profile:
     return profiles.of_rectangles([(w, y - 0.5 * h, y + 0.5 * h) for w, y, h in parts])
 
 
+@keyword(
+    "BEAM GENERAL SECTION",
+    "ELSET SECTION DENSITY OFFSET1 OFFSET2",
+    "POISSON LUMP ROTARYINERTIA ZERO",
+    place="model",
+)
 def beam_general_section(deck: Deck, card: Card) -> None:
     """``*BEAM GENERAL SECTION``: area, I11, I12, I22, J, or sizes; first axis; E, G."""
     elset = card.required("ELSET")
@@ -211,6 +224,7 @@ def beam_general_section(deck: Deck, card: Card) -> None:
         deck.scope.lines.append(draft)
 
 
+@keyword("TRANSVERSE SHEAR STIFFNESS", place="model")
 def shear_stiffness(deck: Deck, card: Card) -> None:
     """``*TRANSVERSE SHEAR STIFFNESS``: G times the shear area of the beam section before it."""
     beams = [line for line in deck.scope.lines if line.role == "beam"]
@@ -226,6 +240,7 @@ def shear_stiffness(deck: Deck, card: Card) -> None:
     beams[-1].shear_stiffness = first
 
 
+@keyword("SPRING", "ELSET NONLINEAR", place="model")
 def spring(deck: Deck, card: Card) -> None:
     """``*SPRING, ELSET=[, NONLINEAR]``: dofs (SPRING1, SPRING2); stiffness, or force and way."""
     elset, rows = card.required("ELSET"), card.lines("the stiffness")

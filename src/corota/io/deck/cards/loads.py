@@ -12,6 +12,7 @@ from corota.io.deck.cards.step import loads_of, open_step
 from corota.io.deck.cards.supports import dof_of
 from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import PLANAR, Draft
+from corota.io.deck.keywords import keyword
 
 _FACE = r"(H?P)(\d{1,9})\Z"
 _TRACTION = r"(TRVEC|TRSHR)(\d{1,9})\Z"
@@ -39,6 +40,7 @@ _OTHER_LOADS = (
 )
 
 
+@keyword("CLOAD", "OP AMPLITUDE LOADCASE FOLLOWER REAL IMAGINARY", "REGIONTYPE")
 def cload(deck: Deck, card: Card) -> None:
     """``*CLOAD[, OP=][, AMPLITUDE=]``: node or set, dof, value."""
     now = loads_of(deck, card, "force")
@@ -58,6 +60,7 @@ def cload(deck: Deck, card: Card) -> None:
             row.error(1, f"a planar model takes no load in dof {dof}")
 
 
+@keyword("DLOAD", "OP AMPLITUDE LOADCASE FOLLOWER REAL IMAGINARY", "REGIONTYPE CONSTANTRESULTANT")
 def dload(deck: Deck, card: Card) -> None:
     """``*DLOAD``: pressure on faces, ``GRAV``, ``CENTRIF``, ``CENT``, forces per volume."""
     now = loads_of(deck, card, "distributed")
@@ -159,6 +162,11 @@ def _centrifugal(row: Row, label: str) -> Draft:
     return Draft("centrifugal", row, row.get(0), value, 1 if ny else 2)
 
 
+@keyword(
+    "DSLOAD",
+    "OP AMPLITUDE FOLLOWER LOADCASE ORIENTATION REAL IMAGINARY",
+    "REGIONTYPE CONSTANTRESULTANT",
+)
 def dsload(deck: Deck, card: Card) -> None:
     """``*DSLOAD``: surface, ``P``, ``HP``, pressure; or ``TRVEC``, ``TRSHR``, size, direction."""
     now = loads_of(deck, card, "distributed")
@@ -193,6 +201,7 @@ def _axes(deck: Deck, card: Card) -> float:
     return angle
 
 
+@keyword("PRESSURE PENETRATION", "SLAVE MASTER AMPLITUDE OP", "PENETRATIONTIME")
 def pressure_penetration(deck: Deck, card: Card) -> None:
     """``*PRESSURE PENETRATION, SLAVE=, MASTER=``: node, node, pressure, critical pressure."""
     now = open_step(deck, card)

@@ -12,6 +12,7 @@ import numpy as np
 from corota.errors import InputError
 from corota.io.deck.build.change_sections import change_sections
 from corota.io.deck.cards.step import open_step
+from corota.io.deck.keywords import keyword
 from corota.mesh.kinds import KINDS
 from corota.mesh.parts import cells_of
 from corota.model.material_table import MaterialTable
@@ -42,6 +43,8 @@ class MassScalingDraft:
     step: int
 
 
+@keyword("FIXED MASS SCALING", "ELSET FACTOR DT TYPE", "FREQUENCY NUMBERINTERVAL")
+@keyword("VARIABLE MASS SCALING", "ELSET FACTOR DT TYPE", "FREQUENCY NUMBERINTERVAL")
 def mass_scaling(deck: Deck, card: Card) -> None:
     """``*FIXED MASS SCALING[, ELSET=][, FACTOR=][, DT=, TYPE=]``: heavier elements."""
     card.no_rows()

@@ -12,6 +12,7 @@ from corota.io.deck.card import Card, Refused, Row, both, key
 from corota.io.deck.cards.distribution import plane_angle
 from corota.io.deck.cards.step import turns_nlgeom_on
 from corota.io.deck.drafts import Draft, MaterialDraft, SectionDraft
+from corota.io.deck.keywords import keyword
 from corota.io.deck.laws import LAWS, DeckLaw
 from corota.model.local_strain import ALIASES, LOCAL_STRAINS, local_strain
 
@@ -34,6 +35,7 @@ ELASTIC_TYPES = {
 HYBRID_RATIO = 29998.0 / 60002.0
 
 
+@keyword("MATERIAL", "NAME", place="model")
 def material(deck: Deck, card: Card) -> None:
     """``*MATERIAL, NAME=``: opens a material for the cards below it."""
     name = card.required("NAME") or f"unnamed material of line {card.where.line}"
@@ -45,6 +47,7 @@ def material(deck: Deck, card: Card) -> None:
     deck.materials.setdefault(key(name), deck.material)
 
 
+@keyword("ELASTIC", "TYPE MODULI DEPENDENCIES", place="model")
 def elastic(deck: Deck, card: Card) -> None:
     """``*ELASTIC[, TYPE=]``: the constants of the law."""
     law = ELASTIC_TYPES.get(key(card.value("TYPE")))
@@ -123,6 +126,7 @@ def _refuse_twice(card: Card, temperatures: list[float]) -> None:
         seen.add(at)
 
 
+@keyword("DENSITY", "DEPENDENCIES", place="model")
 def density(deck: Deck, card: Card) -> None:
     """``*DENSITY``: mass per volume, temperature."""
     found = open_material(deck, card)
@@ -152,6 +156,12 @@ def open_material(deck: Deck, card: Card, new_law: bool = False) -> MaterialDraf
     return found
 
 
+@keyword(
+    "SOLID SECTION",
+    "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0 NODALTHICKNESS",
+    "CONTROLS OFFSET REFNODE STACKDIRECTION SYMMETRIC LAYUP",
+    place="model",
+)
 def solid_section(deck: Deck, card: Card) -> None:
     """``*SOLID SECTION, ELSET=, MATERIAL=``: thickness (default 1)."""
     elset = card.required("ELSET")
@@ -194,6 +204,7 @@ def solid_section(deck: Deck, card: Card) -> None:
         )
 
 
+@keyword("NODAL THICKNESS", place="model")
 def nodal_thickness(deck: Deck, card: Card) -> None:
     """``*NODAL THICKNESS``: node or set, thickness."""
     for row in card.rows():
@@ -203,6 +214,19 @@ def nodal_thickness(deck: Deck, card: Card) -> None:
                 deck.thicknesses.append(Draft("thickness", row, row.get(0), value))
 
 
+@keyword(
+    "SHELL SECTION",
+    "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS SHELLTHICKNESS",
+    "OFFSET CONTROLS POISSON SECTIONINTEGRATION TEMPERATURE DENSITY THICKNESSMODULUS ZERO "
+    "STACKDIRECTION SYMMETRIC LAYUP",
+    place="model",
+)
+@keyword(
+    "MEMBRANE SECTION",
+    "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS",
+    "OFFSET CONTROLS POISSON",
+    place="model",
+)
 def shell_section(deck: Deck, card: Card) -> None:
     """``*SHELL SECTION``, ``*MEMBRANE SECTION``: a planar part; the thickness is required."""
     by_set = card.has("NODALTHICKNESS") or card.has("SHELLTHICKNESS")
@@ -212,6 +236,7 @@ def shell_section(deck: Deck, card: Card) -> None:
     solid_section(deck, card)
 
 
+@keyword("ORIENTATION", "NAME SYSTEM", "DEFINITION", place="model")
 def orientation(deck: Deck, card: Card) -> None:
     """``*ORIENTATION, NAME=``: points on the first axis and in the plane, or a distribution."""
     name = card.required("NAME")

@@ -25,6 +25,7 @@ from corota.io.deck.elements import (
     OWN,
     why_unsupported,
 )
+from corota.io.deck.keywords import keyword
 from corota.lazy import lazy
 from corota.mesh.kinds import N_NODES
 
@@ -42,6 +43,7 @@ LONG = 1 << 16
 MAX_GENERATE = 50_000_000
 
 
+@keyword("NODE", "NSET SYSTEM", place="model")
 def node(deck: Deck, card: Card) -> None:
     """``*NODE``: label, x, y[, z]."""
     labels_of_card = []
@@ -106,6 +108,7 @@ def _zero(text: str) -> bool:
         return False
 
 
+@keyword("ELEMENT", "TYPE ELSET", place="model")
 def element(deck: Deck, card: Card) -> None:
     """``*ELEMENT, TYPE=``: label, nodes."""
     name = card.required("TYPE")
@@ -187,6 +190,7 @@ def _joined(rows: Iterator[Row], size: int) -> Iterator[Row]:
         yield open_row
 
 
+@keyword("NSET", "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED")
 def nset(deck: Deck, card: Card) -> None:
     """``*NSET, NSET=[, GENERATE][, ELSET=]``."""
     if card.has("UNSORTED"):
@@ -197,6 +201,7 @@ def nset(deck: Deck, card: Card) -> None:
         _set(deck, card, deck.scope.nsets, "NSET")
 
 
+@keyword("ELSET", "ELSET GENERATE INSTANCE INTERNAL")
 def elset(deck: Deck, card: Card) -> None:
     """``*ELSET, ELSET=[, GENERATE]``."""
     _set(deck, card, deck.scope.elsets, "ELSET")
@@ -271,6 +276,9 @@ def _generated(row: Row) -> Ints:
     return np.arange(first, last + 1, by, dtype=np.int64)
 
 
+@keyword(
+    "SURFACE", "NAME TYPE INTERNAL FILLETRADIUS COMBINE", "REGIONTYPE TRIM MAXRATIO", place="model"
+)
 def surface(deck: Deck, card: Card) -> None:
     """``*SURFACE, NAME=[, TYPE=ELEMENT|NODE|SEGMENTS]``: element or set, face; or nodes."""
     name = card.required("NAME")

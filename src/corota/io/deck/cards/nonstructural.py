@@ -12,6 +12,7 @@ import numpy as np
 from corota.errors import InputError
 from corota.io.deck.build.mesh import views_in
 from corota.io.deck.build.targets import Targets
+from corota.io.deck.keywords import keyword
 from corota.mesh.parts import cells_of
 from corota.mesh.shape_functions import shape_functions, shape_gradients
 from corota.model.material_table import MaterialTable
@@ -43,6 +44,7 @@ class NonstructuralDraft:
     by_volume: bool = False
 
 
+@keyword("NONSTRUCTURAL MASS", "ELSET UNITS DISTRIBUTION", place="model")
 def nonstructural_mass(deck: Deck, card: Card) -> None:
     """``*NONSTRUCTURAL MASS, ELSET=, UNITS=[, DISTRIBUTION=]``: the mass, or its density."""
     elset = card.required("ELSET")

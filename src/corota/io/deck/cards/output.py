@@ -9,6 +9,7 @@ from corota.io.deck import numerals
 from corota.io.deck.card import Card, key, nearest
 from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import StepDraft
+from corota.io.deck.keywords import keyword
 from corota.model.steps import Output
 from corota.results.table import requests
 
@@ -22,6 +23,13 @@ Kind = Literal[
     "contact file",
 ]
 
+_PRINT = "TOTALS FREQUENCY FREQUENCYF TIMEPOINTS"
+_PRINT_IGNORED = "SUMMARY LASTITERATIONS CONTACTELEMENTS"
+_FILE = "FREQUENCY FREQUENCYF TIMEPOINTS"
+_FILE_IGNORED = (
+    "GLOBAL OUTPUT LASTITERATIONS CONTACTELEMENTS OUTPUTALL POSITION DIRECTIONS SECTIONFORCES "
+    "VARIABLE SUMMARY"
+)
 #: Variables that are written, by their location; of the tables of nodes and points see `written`.
 WRITTEN = {
     "node": (),
@@ -40,6 +48,7 @@ def written(place: str) -> tuple[str, ...]:
     return own + WRITTEN[place]
 
 
+@keyword("RESTART", "WRITE READ FREQUENCY STEP INC ENDSTEP JOB", "OVERLAY NUMBERINTERVAL TIMEMARKS")
 def restart(deck: Deck, card: Card) -> None:
     """``*RESTART, WRITE[, FREQUENCY=]``: keep checkpoints of this step and the later ones.
 
@@ -56,6 +65,7 @@ def restart(deck: Deck, card: Card) -> None:
         deck.step.restart = deck.restart
 
 
+@keyword("NODE PRINT", f"NSET {_PRINT} GLOBAL", _PRINT_IGNORED)
 def node_print(deck: Deck, card: Card) -> None:
     """``*NODE PRINT[, NSET=]``: table of nodal values in ``<job>.dat``; else of all nodes.
 
@@ -64,21 +74,27 @@ def node_print(deck: Deck, card: Card) -> None:
     _request(deck, card, "node print", card.value("NSET"))
 
 
+@keyword("EL PRINT", f"ELSET {_PRINT}", f"GLOBAL POSITION {_PRINT_IGNORED}")
 def el_print(deck: Deck, card: Card) -> None:
     """``*EL PRINT[, ELSET=]``: table of values at integration points in ``<job>.dat``."""
     _request(deck, card, "el print", card.value("ELSET"))
 
 
+@keyword("NODE FILE", f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}")
+@keyword("NODE OUTPUT", f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}")
 def node_file(deck: Deck, card: Card) -> None:
     """``*NODE FILE`` or ``*NODE OUTPUT``: nodal fields in the result file."""
     _request(deck, card, "node file", card.value("NSET"))
 
 
+@keyword("EL FILE", f"NSET ELSET {_FILE}", _FILE_IGNORED)
+@keyword("ELEMENT OUTPUT", f"NSET ELSET {_FILE}", _FILE_IGNORED)
 def el_file(deck: Deck, card: Card) -> None:
     """``*EL FILE`` or ``*ELEMENT OUTPUT``: element fields in the result file."""
     _request(deck, card, "el file", card.value("NSET") or card.value("ELSET"))
 
 
+@keyword("CONTACT PRINT", "SLAVE MASTER TOTALS FREQUENCY FREQUENCYF TIMEPOINTS", "SUMMARY NSET SET")
 def contact_print(deck: Deck, card: Card) -> None:
     """``*CONTACT PRINT[, SLAVE=, MASTER=]``: tables of contact in ``<job>.dat``."""
     slave, master = card.value("SLAVE"), card.value("MASTER")
@@ -87,6 +103,7 @@ def contact_print(deck: Deck, card: Card) -> None:
     _request(deck, card, "contact print", f"{slave}-{master}" if slave else "")
 
 
+@keyword("SECTION PRINT", "SURFACE FREQUENCY FREQUENCYF TIMEPOINTS", "NAME AXES UPDATE TOTALS")
 def section_print(deck: Deck, card: Card) -> None:
     """``*SECTION PRINT, SURFACE=[, NAME=]``: force and moment on a surface in ``<job>.dat``."""
     surface = card.required("SURFACE")
@@ -94,11 +111,18 @@ def section_print(deck: Deck, card: Card) -> None:
         _request(deck, card, "section print", surface)
 
 
+@keyword("CONTACT FILE", _FILE, "NSET SLAVE MASTER")
+@keyword("CONTACT OUTPUT", _FILE, "NSET SLAVE MASTER VARIABLE CPSET SURFACE")
 def contact_file(deck: Deck, card: Card) -> None:
     """``*CONTACT FILE`` or ``*CONTACT OUTPUT``: contact fields, which are always written."""
     _request(deck, card, "contact file", "")
 
 
+@keyword(
+    "OUTPUT",
+    "FREQUENCY FREQUENCYF VARIABLE",
+    "FIELD HISTORY NAME OP NUMBERINTERVAL TIMEMARKS TIMEINTERVAL TIMEPOINTS FILTER",
+)
 def output(deck: Deck, card: Card) -> None:
     """``*OUTPUT``: frequency of the ``*... OUTPUT`` cards below it."""
     now = _open_step(deck, card)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from corota.io.deck.card import Card, complete, key
 from corota.io.deck.cards.step import keeps_preload, open_procedure, step_times
 from corota.io.deck.drafts import PLANAR, StepDraft
+from corota.io.deck.keywords import keyword
 from corota.model.paths import ArcLength, Label
 from corota.model.steps import Buckle
 
@@ -20,6 +21,11 @@ _CONTROLS = {"FIELD": (0, "tolerance"), "TIMEINCREMENTATION": (4, "max_iteration
 _WITHOUT_EFFECT = ("LINESEARCH", "CONTACT", "CONSTRAINTS")
 
 
+@keyword(
+    "STATIC",
+    "DIRECT RIKS STABILIZE",
+    "SOLVER TIMERESET ALLSDTOL CONTINUE FACTOR ADIABATIC LONGTERM",
+)
 def static(deck: Deck, card: Card) -> None:
     """``*STATIC[, DIRECT]``: first increment, period, smallest, largest; ``RIKS``: arc length."""
     now = open_procedure(deck, card)
@@ -77,6 +83,7 @@ def _riks(card: Card, now: StepDraft) -> None:
     now.times = (first / scale, 1.0, least / scale, most / scale)
 
 
+@keyword("BUCKLE", ignored="SOLVER EIGENSOLVER")
 def buckle(deck: Deck, card: Card) -> None:
     """``*BUCKLE``: the number of factors; other entries control other solvers."""
     now, rows, count = open_procedure(deck, card), list(card.rows()), 1
@@ -91,6 +98,7 @@ def buckle(deck: Deck, card: Card) -> None:
     now.options = {"modes": count, "preload": preload, "dead_loads": True}
 
 
+@keyword("CONTROLS", "PARAMETERS RESET", "ANALYSIS TYPE FIELD")
 def controls(deck: Deck, card: Card) -> None:
     """``*CONTROLS``: tolerance and iterations are used, the rest is noted."""
     if card.has("RESET"):

@@ -12,6 +12,7 @@ from corota.io.deck import numerals
 from corota.io.deck.cards.material import open_material
 from corota.io.deck.cards.rates import johnson_cook
 from corota.io.deck.drafts import CurveDraft, MaterialDraft, PlasticDraft
+from corota.io.deck.keywords import keyword
 from corota.model.hill import Hill
 from corota.model.plasticity import Mises, Voce
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 MOST_BACK_STRESSES = 20
 
 
+@keyword("PLASTIC", "HARDENING DATATYPE NUMBERBACKSTRESSES RATE DEPENDENCIES", place="model")
 def plastic(deck: Deck, card: Card) -> None:
     """``*PLASTIC[, HARDENING=][, RATE=]``: yield stress against plastic strain, or parameters."""
     found = open_material(deck, card)
@@ -135,6 +137,7 @@ def _table(card: Card) -> list[CurveDraft]:
     return curves
 
 
+@keyword("POTENTIAL", place="model")
 def potential(deck: Deck, card: Card) -> None:
     """``*POTENTIAL``: R11, R22, R33, R12, R13, R23; the last two are out of the plane."""
     found = open_material(deck, card)
@@ -144,6 +147,7 @@ def potential(deck: Deck, card: Card) -> None:
     found.potential, found.potential_card = tuple(values), card
 
 
+@keyword("CYCLIC HARDENING", "PARAMETERS", place="model")
 def cyclic_hardening(deck: Deck, card: Card) -> None:
     """``*CYCLIC HARDENING[, PARAMETERS]``: size of the yield surface against plastic strain."""
     found = open_material(deck, card)

@@ -20,6 +20,7 @@ from corota.io.deck.build.mesh import views_in
 from corota.io.deck.card import Card, Refused, nearest
 from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import Draft, PretensionDraft
+from corota.io.deck.keywords import keyword
 from corota.mesh.kinds import EDGES
 from corota.model.constraints import Equation, LocalAxes
 from corota.model.loads import Fixed, InitialTemperature, InitialVelocity, Temperature
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 _Item = TypeVar("_Item")
 
 
+@keyword("PRE-TENSION SECTION", "SURFACE ELEMENT NODE", "NAME", place="model")
 def pretension(deck: Deck, card: Card) -> None:
     """``*PRE-TENSION SECTION, SURFACE=, NODE=``: components of the normal."""
     if card.has("ELEMENT"):

@@ -9,6 +9,7 @@ from corota.errors import InputError
 from corota.io.deck.card import Card, key
 from corota.io.deck.cards.material import open_material
 from corota.io.deck.cards.step import open_procedure, step_times
+from corota.io.deck.keywords import keyword
 from corota.model.johnson_cook import JohnsonCook
 from corota.model.rates import CowperSymonds, Norton, YieldRatio
 from corota.model.steps import Visco
@@ -54,6 +55,7 @@ def _set_rate(deck: Deck, card: Card, make: Callable[[], Any]) -> None:
     found.rate = make()
 
 
+@keyword("RATE DEPENDENT", "TYPE", place="model")
 def rate_dependent(deck: Deck, card: Card) -> None:
     """``*RATE DEPENDENT[, TYPE=]``: D and n; ratios and rates; or C and a rate."""
     kind = card.choice("TYPE", RATE_TYPES, "POWERLAW")
@@ -68,6 +70,7 @@ def rate_dependent(deck: Deck, card: Card) -> None:
         _set_rate(deck, card, lambda: CowperSymonds(rate, exponent))
 
 
+@keyword("CREEP", "LAW", place="model")
 def creep(deck: Deck, card: Card) -> None:
     """``*CREEP[, LAW=]``: A, n, m, temperature."""
     law = CREEP_LAWS[card.choice("LAW", tuple(CREEP_LAWS), "NORTON")]
@@ -97,6 +100,7 @@ def johnson_cook(deck: Deck, card: Card) -> None:
     found.johnson_cook, found.johnson_cook_card = numbers, card
 
 
+@keyword("SPECIFIC HEAT", place="model")
 def specific_heat(deck: Deck, card: Card) -> None:
     """``*SPECIFIC HEAT``: heat by mass and temperature; for adiabatic heating."""
     found = open_material(deck, card)
@@ -106,12 +110,14 @@ def specific_heat(deck: Deck, card: Card) -> None:
     found.specific_heat = rows[0][0]
 
 
+@keyword("INELASTIC HEAT FRACTION", place="model")
 def heat_fraction(deck: Deck, card: Card) -> None:
     """``*INELASTIC HEAT FRACTION``: share of the plastic work that heats, by default 0.9."""
     found, row = open_material(deck, card), next(card.rows(), None)
     found.heat_fraction = 0.9 if row is None else row.number(0, "the fraction", 0.9)
 
 
+@keyword("VISCO", "DIRECT CETOL", "SOLVER")
 def visco(deck: Deck, card: Card) -> None:
     """``*VISCO[, CETOL=][, DIRECT]``: first increment, period, smallest and largest increment."""
     now = open_procedure(deck, card)

@@ -11,6 +11,7 @@ from corota.io.deck import numerals
 from corota.io.deck.card import Card, key
 from corota.io.deck.drafts import Draft, ElementBlock, ReleaseDraft, Scope, TieDraft
 from corota.io.deck.elements import LINE_ELEMENTS
+from corota.io.deck.keywords import keyword
 
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
@@ -23,6 +24,7 @@ MOMENTS = {"M1": True, "ALLM": True, "M1-M2": True, "M2": False, "T": False, "M1
 MOMENTS |= {"M2-T": False}
 
 
+@keyword("RELEASE", place="model")
 def release(deck: Deck, card: Card) -> None:
     """``*RELEASE``: element or set, S1 or S2, moments that the end does not carry."""
     for row in card.rows():

@@ -1,4 +1,4 @@
-"""Cards of steps: begin, end and times."""
+"""Cards of steps: begin, end and times; headings."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from corota.io.deck.card import Card, key
 from corota.io.deck.drafts import StepDraft
+from corota.io.deck.keywords import keyword
 from corota.model.steps import Dynamic
 
 if TYPE_CHECKING:
@@ -23,12 +24,24 @@ _KINDS = {
 }
 
 
+@keyword("HEADING", ignored="UNITS")
+def heading(deck: Deck, card: Card) -> None:
+    """``*HEADING``: free text."""
+    deck.heading += [row.text.strip() for row in card.rows()]
+
+
+@keyword("PARAMETER", ignored="DEPENDENT INDEPENDENT")
+def parameter(deck: Deck, card: Card) -> None:
+    """``*PARAMETER``: its values are already substituted in the text."""
+
+
 def turns_nlgeom_on(deck: Deck, card: str) -> None:
     """A card that makes the steps of CalculiX geometrically nonlinear."""
     if deck.dialect == "calculix" and card not in deck.nonlinear:
         deck.nonlinear.append(card)
 
 
+@keyword("STEP", "NLGEOM INC AMPLITUDE PERTURBATION", "NAME UNSYMM EXTRAPOLATION SOLVER CONVERTSDI")
 def step(deck: Deck, card: Card) -> None:
     """``*STEP[, NLGEOM][, INC=][, AMPLITUDE=RAMP|STEP]``."""
     if deck.step is not None:
@@ -55,6 +68,7 @@ def step(deck: Deck, card: Card) -> None:
     deck.material = None
 
 
+@keyword("END STEP")
 def end_step(deck: Deck, card: Card) -> None:
     """``*END STEP``."""
     card.no_rows()

@@ -9,6 +9,7 @@ from corota.io.deck.card import Card, Refused, Row, complete, key, nearest
 from corota.io.deck.cards.step import renews
 from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import PLANAR, Draft
+from corota.io.deck.keywords import keyword
 
 #: Names of Abaqus for groups of degrees of freedom (numbers from 1).
 NAMED_SUPPORTS = {
@@ -27,6 +28,7 @@ NAMED_SUPPORTS = {
 RATES = {"DISPLACEMENT": 0, "VELOCITY": 1, "ACCELERATION": 2}
 
 
+@keyword("BOUNDARY", "OP AMPLITUDE TYPE LOADCASE FIXED REAL IMAGINARY", "REGIONTYPE")
 def boundary(deck: Deck, card: Card) -> None:
     """``*BOUNDARY[, OP=][, AMPLITUDE=][, TYPE=][, FIXED]``: target, first dof[, last[, value]]."""
     if renews(deck.step, card, "support") and deck.step is not None:

@@ -11,6 +11,7 @@ from corota.io.deck.card import Refused, complete
 from corota.io.deck.cards.material import open_material
 from corota.io.deck.cards.step import loads_of
 from corota.io.deck.drafts import Draft, InitialDraft
+from corota.io.deck.keywords import keyword
 from corota.model.loads import InitialStress, InitialTemperature
 from corota.model.materials import Expansion
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 _TYPES = {"ISO": 1, "ORTHO": 3}
 
 
+@keyword("EXPANSION", "TYPE ZERO DEPENDENCIES", place="model")
 def expansion(deck: Deck, card: Card) -> None:
     """``*EXPANSION[, TYPE=ISO or ORTHO][, ZERO=]``: coefficients, temperature."""
     found = open_material(deck, card)
@@ -43,6 +45,7 @@ def expansion(deck: Deck, card: Card) -> None:
         deck.error(card, rows[0].where, error.message)
 
 
+@keyword("TEMPERATURE", "OP AMPLITUDE", "LOADCASE")
 def temperature(deck: Deck, card: Card) -> None:
     """``*TEMPERATURE[, OP=][, AMPLITUDE=]``: node or set, temperature."""
     now = loads_of(deck, card, "temperature")

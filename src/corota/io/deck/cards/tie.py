@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from corota.io.deck.card import Card, Refused, Row, both, complete, key
 from corota.io.deck.cards.step import turns_nlgeom_on
 from corota.io.deck.drafts import PLANAR, Draft, TieDraft
+from corota.io.deck.keywords import keyword
 from corota.lazy import lazy
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ MPC_KINDS |= {"STRAIGHT": "straight", "SLIDER": "straight"}
 link = lazy("corota.io.deck.cards.connectors:link")
 
 
+@keyword("EQUATION", place="model")
 def equation(deck: Deck, card: Card) -> None:
     """``*EQUATION``: number of terms, then node, dof, coefficient for each term."""
     rows = list(card.rows())
@@ -58,6 +60,12 @@ def _reference(card: Card) -> Draft | None:
     return Draft("node", card.row_of("REFNODE"), text, (0.0,)) if text else None
 
 
+@keyword(
+    "RIGID BODY",
+    "NSET ELSET ANALYTICALSURFACE REFNODE ROTNODE PINNSET TIENSET",
+    "POSITION ISOTHERMAL",
+    place="model",
+)
 def rigid_body(deck: Deck, card: Card) -> None:
     """``*RIGID BODY, NSET= or ELSET= or ANALYTICAL SURFACE=, REF NODE=[, ROT NODE=]``."""
     card.no_rows()
@@ -90,6 +98,7 @@ def rigid_body(deck: Deck, card: Card) -> None:
         deck.ties.append(tie)
 
 
+@keyword("COUPLING", "REFNODE SURFACE INFLUENCERADIUS", "CONSTRAINTNAME", place="model")
 def coupling(deck: Deck, card: Card) -> None:
     """``*COUPLING, REF NODE=, SURFACE=, CONSTRAINT NAME=``; its kind is the card after it."""
     card.no_rows()
@@ -101,17 +110,20 @@ def coupling(deck: Deck, card: Card) -> None:
         deck.ties.append(tie)
 
 
+@keyword("KINEMATIC", place="model")
 def kinematic(deck: Deck, card: Card) -> None:
     """``*KINEMATIC``: first and last dof that follow the reference node; by default all."""
     _kind(deck, card, "kinematic")
 
 
+@keyword("DISTRIBUTING", "WEIGHTINGMETHOD", ignored="COUPLING", place="model")
 def distributing(deck: Deck, card: Card) -> None:
     """``*DISTRIBUTING``: first and last dof of the reference node that follow the surface."""
     card.choice("WEIGHTINGMETHOD", ("UNIFORM",), "UNIFORM")
     _kind(deck, card, "distributing")
 
 
+@keyword("KINEMATIC COUPLING", "REFNODE", place="model")
 def kinematic_coupling(deck: Deck, card: Card) -> None:
     """``*KINEMATIC COUPLING, REF NODE=``: node or set, first dof, last dof."""
     reference = _reference(card)
@@ -143,6 +155,7 @@ def couplers(deck: Deck, card: Card) -> None:
             deck.couplers[key(name)] = Draft("node", row, str(node), ())
 
 
+@keyword("DISTRIBUTING COUPLING", "ELSET", place="model")
 def distributing_coupling(deck: Deck, card: Card) -> None:
     """``*DISTRIBUTING COUPLING, ELSET=``: node or set, weight."""
     name = card.required("ELSET")
@@ -180,6 +193,7 @@ def _kind(deck: Deck, card: Card, kind: str) -> None:
         card.error("no dof of the plane is coupled; 1 = x, 2 = y, 6 = rotation")
 
 
+@keyword("MPC", place="model")
 def mpc(deck: Deck, card: Card) -> None:
     """``*MPC``: ``BEAM``, ``PIN`` or ``TIE`` with two nodes or sets, ``STRAIGHT`` with many.
 
@@ -240,6 +254,7 @@ def _nodes(row: Row, start: int) -> list[Draft]:
     return [Draft("node", row, name, (0.0,)) for name in names if name not in ("", "0")]
 
 
+@keyword("TRANSFORM", "NSET TYPE", place="model")
 def transform(deck: Deck, card: Card) -> None:
     """``*TRANSFORM, NSET=, TYPE=R or C``: two points that give the axes."""
     name = card.required("NSET")

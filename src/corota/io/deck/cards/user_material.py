@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from corota.errors import InputError
 from corota.io.deck.cards.material import open_material
+from corota.io.deck.keywords import keyword
 from corota.model.compiled import Umat
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 PER_ROW = 8
 
 
+@keyword("USER MATERIAL", "CONSTANTS TYPE", "UNSYMM", place="model")
 def user_material(deck: Deck, card: Card) -> None:
     """``*USER MATERIAL, CONSTANTS=``: ``PROPS`` of the subroutine UMAT."""
     open_material(deck, card)
@@ -44,6 +46,7 @@ def user_material(deck: Deck, card: Card) -> None:
     found.law_card, found.constants = card, [(0.0, values)]
 
 
+@keyword("DEPVAR", ignored="DELETE", place="model")
 def depvar(deck: Deck, card: Card) -> None:
     """``*DEPVAR``: number of solution-dependent state variables."""
     # Further lines are names for output.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from corota.errors import InputError
 from corota.io.deck.card import Card, complete, key
 from corota.io.deck.cards.material import open_material
+from corota.io.deck.keywords import keyword
 from corota.model.material_table import MaterialTable
 from corota.model.viscoelastic import WLF, Viscoelastic
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from corota.model.materials import Material
 
 
+@keyword("VISCOELASTIC", "TIME", place="model")
 def viscoelastic(deck: Deck, card: Card) -> None:
     """``*VISCOELASTIC, TIME=PRONY``: g, k and tau of each term."""
     found = open_material(deck, card)
@@ -34,6 +36,7 @@ def viscoelastic(deck: Deck, card: Card) -> None:
     found.prony, found.prony_card = rows, card
 
 
+@keyword("TRS", "DEFINITION", place="model")
 def trs(deck: Deck, card: Card) -> None:
     """``*TRS[, DEFINITION=WLF]``: the temperature of the times, C1, C2."""
     found = open_material(deck, card)
