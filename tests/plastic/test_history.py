@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.analysis.terms.contact import newton as increment
+from corota.analysis import increment_loop as increment
 from corota.verification.plastic_models import cantilever, find, perforated_strip
 from support.newton import ROUNDING, Residuals
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.constraints.none import IDENTITY
-from corota.analysis.terms.contact.gaps import ContactState, no_contact
+from corota.analysis.terms.contact.gaps import ContactState
 
 if TYPE_CHECKING:
     from corota.analysis.constraints.elimination import LinearizedConstraints
@@ -52,7 +52,7 @@ class Evaluation:
     added: Floats | None = None
     inertia: Floats | None = None
     damping: Floats | None = None
-    contact_state: ContactState = field(default_factory=no_contact)
+    contact_state: ContactState = field(default_factory=ContactState)
     inertial_stiffness: float = 0.0
     momentum: float = 0.0
 

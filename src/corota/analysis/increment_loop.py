@@ -13,23 +13,32 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
+import numpy as np
+
 from corota.analysis.increments import CUT, Increments
+from corota.analysis.newton import newton
+from corota.analysis.rule import REST, Rule
 from corota.analysis.state_tree import UnsuitableState
 from corota.errors import ConvergenceError, Interrupted
+from corota.lazy import lazy
 from corota.results.observer import Iteration
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.analysis.equations import System
-    from corota.analysis.newton import Outcome, ResidualNorms
+    from corota.analysis.evaluation import Evaluation
+    from corota.analysis.newton import Outcome, ResidualNorms, Settings
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
+    from corota.analysis.terms.contact.gaps import ContactState
     from corota.arrays import Floats
     from corota.model.steps import Dynamic, Static, Step
 
     Save = Callable[[State, int, float, dict[str, float]], None]
     Report = Callable[[int, ResidualNorms, float, str], None]
+
+contact_equations = lazy("corota.analysis.terms.contact.equations:ContactEquations")
 
 #: Advice where a step has used all its increments.
 MORE_OR_LONGER = "allow more (INC=) or longer ones"
@@ -209,12 +218,75 @@ class IncrementLoop:
 class ContactIncrement(Protocol):
     """Contact of a solved increment, which a model without it has as well."""
 
+    contact_state: ContactState | None
+
     @property
     def force(self) -> Floats:
         """Of contact on the nodes at its end, shape (n_dofs,)."""
 
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""
+
+
+class NoContact:
+    """An increment of a model without pairs and ties.
+
+    Parameters
+    ----------
+    n_dofs : int
+    """
+
+    contact_state: ContactState | None = None
+
+    def __init__(self, n_dofs: int) -> None:
+        self.force: Floats = np.zeros(n_dofs)
+
+    def accept(self, u: Floats, step_time: float) -> list[str]:
+        """Nothing to commit."""
+        return []
+
+
+def solve_increment(
+    system: System,
+    u: Floats,
+    prescribed: Floats,
+    step_time: float,
+    settings: Settings,
+    report: Report | None = None,
+    known: Evaluation | None = None,
+    last_chance: bool = False,
+    rule: Rule = REST,
+) -> tuple[Outcome, ContactIncrement]:
+    """Newton's method on displacements and, with contact or ties, on their multipliers.
+
+    Parameters
+    ----------
+    system : System
+    u, prescribed, step_time, settings, report
+        As for :func:`corota.analysis.newton.newton`.
+    known : Evaluation, optional
+        Without contact at `u` and an earlier time: its tangent is the first one.
+    last_chance : bool
+        Whether no shorter increment may follow: the attempt is then not given up early.
+    rule : Rule
+        What the increment makes of its unknowns.
+
+    Returns
+    -------
+    outcome : Outcome
+        In terms of the system; the internal force holds that of contact.
+    contact : ContactIncrement
+        Its ``accept`` commits contact, once the increment is taken.
+    """
+    if system.n_multipliers:
+        equations = contact_equations(system, rule)
+        solved = equations.solve_increment(
+            u, prescribed, step_time, settings, report, known, last_chance
+        )
+        return solved, equations
+    begin = None if known is None else system.with_loads(known, u, step_time)
+    outcome = newton(system, u, prescribed, step_time, settings, begin, report, rule)
+    return outcome, NoContact(system.n_dofs)
 
 
 @dataclass

@@ -108,7 +108,7 @@ def _by_multipliers(system: System, u: Floats, time: float, surfaces: Surfaces) 
     rows, columns, values = [], [], []
     for pair, terms in zip(term.pairs, state.terms, strict=True):
         acting = terms.acting
-        dofs = term.dofs(acting.variables)
+        dofs = pair.dofs(acting.variables)
         gradients = [(pair.first, acting.gap_gradient)]
         if pair.two:
             gradients.append((pair.first + pair.n, acting.slip_gradient))

@@ -123,7 +123,7 @@ def find(system: System, u: Floats, time: float, at: Evaluation, kinks: bool = F
         if pair.tied:
             touches = seen
         states.append(np.where(touches, CLOSED, 0).astype(np.int8))
-        dofs = term.dofs(terms.variables)
+        dofs = pair.dofs(terms.variables)
         for start, gradient in _gradients(pair, terms):
             chosen = touches[terms.constraint][:, None] & (dofs >= 0)
             number = np.broadcast_to(start + terms.constraint[:, None], dofs.shape)

@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.energies import Balance
-from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
+from corota.analysis.increment_loop import (
+    Accepted,
+    Attempt,
+    IncrementLoop,
+    NewtonStepper,
+    solve_increment,
+)
 from corota.analysis.increments import CUT, SAME
 from corota.analysis.newton import Settings
 from corota.analysis.procedures.explicit import explicit_step
@@ -23,7 +29,7 @@ from corota.analysis.procedures.motion_start import (
     resting,
     start_motion,
 )
-from corota.analysis.terms.contact.newton import Approach, solve_increment
+from corota.analysis.terms.contact.motion import Approach
 from corota.analysis.terms.contact.relaxation import relax
 from corota.analysis.terms.damping import Damping
 from corota.analysis.terms.inertia import Inertia, MotionState
@@ -168,8 +174,9 @@ class DynamicStepper(NewtonStepper):
             if shorter:
                 begin, end, energy_balance = self.motion.start, self.motion.end, self.energy_balance
                 energy = max(energy_balance.energy, energy_balance.driven(end))
-                moved, meets = end.u - begin.u, self.approach.meets
-                missed = contact.impact_error(moved, energy, step.error_tolerance, meets)
+                missed = self.approach.impact_error(
+                    contact, end.u - begin.u, energy, step.error_tolerance
+                )
                 self.error = max(self.error, missed)
             if self.error > 1.0 and CUT * dt >= self.control.shortest:
                 reason = f"local error {self.error:.2g} times the allowed one"

@@ -15,7 +15,7 @@ from corota.analysis.numbered_model import Role
 from corota.analysis.procedures.explicit_constraints import FreeMass, ReducedMass, mass_of
 from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.rule import AtVelocity
-from corota.analysis.terms.contact.forward import ForwardContact
+from corota.analysis.terms.contact.motion import ForwardContact
 from corota.analysis.terms.damping import material_pairs
 from corota.analysis.terms.inertia import Inertia
 from corota.errors import ConvergenceError, InputError, ModelError

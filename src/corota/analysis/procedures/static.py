@@ -12,11 +12,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.failure import ElementFailure
-from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
+from corota.analysis.increment_loop import (
+    Accepted,
+    Attempt,
+    IncrementLoop,
+    NewtonStepper,
+    solve_increment,
+)
 from corota.analysis.increments import CUT, SAME
 from corota.analysis.newton import Outcome, ResidualNorms, Settings
 from corota.analysis.procedures.carried_bodies import carried_bodies
-from corota.analysis.terms.contact.newton import solve_increment
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
 from corota.model.material_table import MaterialTable

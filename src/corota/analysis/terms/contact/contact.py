@@ -22,7 +22,6 @@ from corota.analysis.terms.contact.gaps import (
     Terms,
     covered,
     mean,
-    no_contact,
 )
 from corota.analysis.terms.term import NO_NODES, NONE, Term, TermOutput
 from corota.errors import ModelError, UnsupportedError
@@ -90,7 +89,10 @@ class ContactTerm(Term):
         self.system = system
         model = system.model
         items: list[ContactPair | Tie] = [*model.ties, *model.contacts]
-        self.pairs: list[Pair] = [make_pair(system, item) for item in items]
+        # Dof of each variable 3 node + component, -1 where there is none.
+        dofs = np.full(3 * len(system.per_node) + 1, -1, np.int64)
+        dofs[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
+        self.pairs: list[Pair] = [make_pair(system, item, dofs) for item in items]
         names: dict[str, int] = {}
         for pair in self.pairs:
             count = names[pair.item.name] = names.get(pair.item.name, 0) + 1
@@ -130,16 +132,13 @@ class ContactTerm(Term):
         #: Work of what drives the slip in static increments, beyond that of the trapezoidal rule.
         self.late_work = 0.0
         self._pressure = np.zeros(system.n_dofs)
-        # Dof of each variable 3 node + component, -1 where there is none.
-        self._dof = np.full(3 * len(system.per_node) + 1, -1, np.int64)
-        self._dof[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
         self._stiff = False
         #: The kink of the surfaces at which the committed equilibrium lies, and that at which the
         #: bodies may rest in the increment.
         self.kink: Kink | None = None
         self.trial_kink: Kink | None = None
         #: Displacements and contact of the last evaluation.
-        self.last = self.u, no_contact()
+        self.last = self.u, ContactState()
         #: Stiffness at each dof and displacements of springs that relaxation attaches.
         self.springs: tuple[Floats, Floats] | None = None
         #: Dropped constraints that were reported, and whether an unconstrained body was.
@@ -258,7 +257,7 @@ class ContactTerm(Term):
         #: Whether coefficients of friction change with the loads of the step.
         self.rubs = self.damps and ramps
         for pair, (p, _) in zip(self.pairs, self.parts(self.committed), strict=True):
-            pair.rub(self.number, self._changed(pair, 0.0), p)
+            pair.rub(self.number, self._changed(0.0), p)
         self._enter(scheme == "central_difference", ramps)
         if self._stiff:
             self._damp()
@@ -293,6 +292,7 @@ class ContactTerm(Term):
                 self.law_share -= SCHEMES[scheme](step.alpha, step.rho_inf).alpha_f  # type: ignore[attr-defined]
         for pair in self.pairs:
             pair.end_share = 1.5 - self.law_share
+            pair.share = 1.0 if pair.law is None else self.law_share
         self._keep_law_force()
 
     def _check_pairs(self, step: Step, scheme: str) -> None:
@@ -329,7 +329,7 @@ class ContactTerm(Term):
             elif before and not pair.active and self.at is not None and (p.any() or q.any()):
                 terms = self.at.acting[self.pairs.index(pair)]
                 force = np.zeros(self.system.n_dofs)
-                pair.add_forces(terms, self.dofs(terms.variables), p, q, force, None)
+                pair.add_forces(terms, p, q, force)
                 fading = self.system.at_nodes(force)
                 if self.damps and ramp:
                     self.fading = self.fading + fading if len(self.fading) else fading
@@ -426,10 +426,6 @@ class ContactTerm(Term):
             self._begun = u, self.positions(u)
         return self._begun[1]
 
-    def dofs(self, variables: Ints) -> Ints:
-        """Dofs of variables of the core, -1 for none."""
-        return self._dof[variables]
-
     def parts(self, multipliers: Floats) -> list[tuple[Floats, Floats]]:
         """Tractions p and q of each pair."""
         out = []
@@ -488,17 +484,15 @@ class ContactTerm(Term):
             self._measure(values)
         x, old = self.positions(u), self._before()
         force, size = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
-        found = []
+        found, changed = [], self._changed(step_time)
         for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
             with system.timed("contact"):
                 pair.core.offset = self.offset_at(pair, step_time)
                 terms = pair.evaluate(x, old, system.nlgeom, bool(p.any() or q.any()))
                 pair.slide(terms, step_time - self.time)
-                pair.rub(self.number, self._changed(pair, step_time), p)
+                pair.rub(self.number, changed, p)
             found.append(terms)
-            acting = terms.acting
-            where = self.dofs(acting.variables)
-            pair.add_forces(acting, where, self.share(pair) * p, q, force, size)
+            pair.add_forces(terms.acting, pair.share * p, q, force, size)
         damping = self._damping(step_time)
         state = ContactState(found, system.at_nodes(force), size, multipliers, damping)
         if len(self.fading):
@@ -508,10 +502,6 @@ class ContactTerm(Term):
             state.of_end = state.force + (1.0 - self.law_share) * now
             state.force = state.force + (1.0 - self.law_share) * self.law_force
         return state
-
-    def share(self, pair: Pair) -> float:
-        """Weight of the tractions at the end in the equation of an increment."""
-        return 1.0 if pair.law is None else self.law_share
 
     def forces(
         self, terms: list[Terms], multipliers: Floats, shears: bool = True, laws: bool = False
@@ -525,7 +515,7 @@ class ContactTerm(Term):
         for pair, own, (p, q) in self.each(terms, multipliers):
             if shears or not (pair.tied or (laws and pair.law is None)):
                 q = q if shears else np.zeros(pair.n)
-                pair.add_forces(own, self.dofs(own.variables), p, q, force, size)
+                pair.add_forces(own, p, q, force, size)
         return self.system.at_nodes(force), size
 
     def _pressures(self) -> Floats:
@@ -542,10 +532,9 @@ class ContactTerm(Term):
             if self.at is not None:
                 self.law_force = self.forces(self.at.terms, self.committed, False, laws=True)[0]
 
-    def _changed(self, pair: Pair, step_time: float) -> float:
-        """Share of the change of friction that a step has made at a time of it."""
-        ramps = self.rubs and isinstance(pair.item, ContactPair) and pair.item.friction_ramps
-        return min(step_time / self.period, 1.0) if ramps else 1.0
+    def _changed(self, step_time: float) -> float:
+        """Share of the change of ramped friction that a step has made at a time of it."""
+        return min(step_time / self.period, 1.0) if self.rubs else 1.0
 
     def offset_at(self, pair: Pair, step_time: float) -> Floats:
         """Offsets of the gaps of a pair at a time of the step, shape (n,)."""

@@ -12,20 +12,22 @@ linearized about a state: what is closed stays closed and sticks.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.failure import GiveUp
+from corota.analysis.failure import ElementFailure, GiveUp
 from corota.analysis.linear.coupling import Coupling
 from corota.analysis.linear.saddle_point import SaddlePointSystem
 from corota.analysis.linear.triplets import Triplets
-from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms
+from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms, newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm, few
 from corota.analysis.terms.contact.gaps import (
+    CHANGES,
     CLOSED,
     COMPLIANCE,
     OPEN,
@@ -42,12 +44,13 @@ from corota.errors import SingularError
 from corota.lazy import lazy
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
+    from corota.analysis.newton import Settings
     from corota.analysis.terms.contact.contact import Each
     from corota.analysis.terms.contact.gaps import ContactState, Kink, Terms
     from corota.analysis.terms.contact.pair import Pair
@@ -62,9 +65,9 @@ if TYPE_CHECKING:
 keeps_kink = lazy("corota.analysis.terms.contact.kinks:keeps_kink")
 along_kink = lazy("corota.analysis.terms.contact.kinks:along_kink")
 both_sides = lazy("corota.analysis.terms.contact.kinks:both_sides")
-impact_error = lazy("corota.analysis.terms.contact.newton:impact_error")
 pivoted = lazy("corota.analysis.terms.contact.pivoting:pivoted")
 explanation = lazy("corota.analysis.terms.contact.output:explanation")
+pressures = lazy("corota.analysis.terms.contact.output:pressures")
 
 #: Complementarity tolerance from which only digits are missing: states that do not change any more
 #: are those of the end, and a position on the way is reached.
@@ -153,6 +156,50 @@ class ContactEquations:
     def kink(self, kink: Kink | None) -> None:
         self.term.trial_kink = kink
 
+    def solve_increment(
+        self,
+        u: Floats,
+        prescribed: Floats,
+        step_time: float,
+        settings: Settings,
+        report: Callable[[int, ResidualNorms, float, str], None] | None,
+        known: Evaluation | None,
+        last_chance: bool,
+    ) -> Outcome:
+        """See :func:`corota.analysis.increment_loop.solve_increment`."""
+        term, n, system, rule = self.term, self.n, self.system, self.rule
+        self.inherit_kink()
+        z = self.start(u)
+        target = np.concatenate([prescribed, z[n:]])
+        most = settings.max_iterations + CHANGES
+        patience = 0 if last_chance else PATIENCE
+        more = replace(settings, max_iterations=most, patience=patience, reuse=None)
+        start = None
+        if known is not None:
+            with contextlib.suppress(ElementFailure):  # which Newton's method reports
+                start = self.evaluate(z, step_time, rule)
+                start.values[:] = known.values
+                # Stabilizing damping of this increment.
+                for added, sign in ((known.added, -1.0), (start.added, 1.0)):
+                    if added is not None:
+                        system.pattern.add_diagonal(start.values, sign * added)
+        fluids = system.conditions.fluids
+        if fluids:
+            known_terms = None if term.at is None else term.at.terms
+            system.conditions.begin_fluids(*pressures(term, known_terms, term.committed), u)
+            start = None
+        found = newton(self, z, target, step_time, more, start, report, rule)
+        while fluids and found.converged and found.at is not None:
+            state = found.at.contact_state
+            contact = pressures(term, state.terms, state.multipliers)
+            if not system.conditions.advance_fluids(*contact, found.u[:n], step_time):
+                break
+            self.go_on()
+            again = newton(self, found.u, target, step_time, more, None, report, rule)
+            again.iterations += found.iterations
+            found = again
+        return self.settle(found)
+
     # -- the protocol of Newton's method -----------------------------------------------
 
     def start(self, u: Floats) -> Floats:
@@ -192,7 +239,7 @@ class ContactEquations:
     def correct(self, at: Evaluation, rhs: Floats, du_prescribed: Floats) -> tuple[Floats, int]:
         """Correction for a right-hand side of equilibrium; that of contact is added."""
         right_sides = RightHandSides(rhs[: self.n, None], du_prescribed[: self.n, None], np.ones(1))
-        if keeps_kink(self, at):
+        if (self.kink is not None or self.waited >= WAITED) and keeps_kink(self, at):
             corrected: tuple[Floats, int] | None = along_kink(self, at, right_sides)
             if corrected is not None:
                 return corrected
@@ -310,7 +357,7 @@ class ContactEquations:
         for k, (pair, terms, _) in enumerate(self.pairs(at.contact_state)):
             if only is not None and k != only:
                 continue
-            where, parts = self.term.dofs(terms.variables), []
+            where, parts = pair.dofs(terms.variables), []
             for gradient in (terms.gap_gradient, terms.slip_gradient):
                 change = np.zeros((pair.n, moved.shape[1]))
                 np.add.at(change, terms.constraint, np.einsum("tv,tvc->tc", gradient, moved[where]))
@@ -584,12 +631,6 @@ class ContactEquations:
         assert self.contact_state is not None
         return self.contact_state.force_at_end
 
-    def impact_error(self, moved: Floats, energy: float, tolerance: float, meets: bool) -> float:
-        """See :func:`corota.analysis.terms.contact.newton.impact_error`."""
-        state = self.contact_state
-        error: float = impact_error(self.term, state, moved, energy, tolerance, meets)
-        return error
-
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""
         assert self.contact_state is not None
@@ -640,12 +681,12 @@ def linearized(
         first, second, end = pair.first, pair.first + pair.n, pair.first + pair.width
         dp, rp, dq, rq, ratio, level = pair.rows(terms, state, p, q, slip_direction)
         slopes.append((ratio, level))
-        closed, sticks, share = state != OPEN, state == CLOSED, term.share(pair)
+        closed, sticks, share = state != OPEN, state == CLOSED, pair.share
         diagonal[first:second], rhs[first:second] = share * dp, share * rp
         expected += int(closed.sum())
         acting = terms.acting
-        to_rows = term.dofs(terms.variables)
-        to_acting = to_rows if acting is terms else term.dofs(acting.variables)
+        to_rows = pair.dofs(terms.variables)
+        to_acting = to_rows if acting is terms else pair.dofs(acting.variables)
 
         # A gradient at the end in rows and columns; forces may act along another.
         parts = [("gap_gradient", first, closed, share), ("slip_gradient", second, sticks, 1.0)]
@@ -665,7 +706,7 @@ def linearized(
             k = acting.constraint
             slope = -ratio[k, None] * acting.slip_gradient
             follow.append(border(to_acting, first + k, slope, state[k] == SLIPPING))
-        pair.add_forces(acting, to_acting, known, shear, force, None)
+        pair.add_forces(acting, known, shear, force)
         if pair.active and term.system.nlgeom and (p.any() or q.any()):
             # Half way an end moves by half.
             half = 1.0 if acting is terms else 0.5
@@ -699,7 +740,7 @@ def second_derivatives(
     """Geometric stiffness, derivatives of the directions of the tractions: even and skew part."""
     with term.system.timed("contact"):
         _, variables, values = pair.core.hessian(p[pair.owner], q[pair.owner])
-    where = term.dofs(variables)
+    where = pair.dofs(variables)
     v = where.shape[1]
     a, b = np.repeat(where, v, axis=1).ravel(), np.repeat(where, v, axis=0).ravel()
     inside = (a >= 0) & (b >= 0)
@@ -734,7 +775,7 @@ def _near(term: ContactTerm, pair: Pair, terms: Terms) -> tuple[Ints, Ints]:
     own = np.where(constraints >= 0, pair.first + pair.owner[constraints], -1)
     if pair.two:
         own = np.concatenate([own, np.where(own >= 0, own + pair.n, -1)], axis=1)
-    return term.dofs(variables), own
+    return pair.dofs(variables), own
 
 
 def border(where: Ints, column: Ints, gradient: Floats, rows: NDArray[np.bool_]) -> Triplets:

@@ -12,6 +12,7 @@ what it does work on is the slip of the increment.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -98,7 +99,7 @@ class Terms:
 
 @dataclass(eq=False)
 class ContactState:
-    """All pairs at a state.
+    """All pairs at a state; none by default.
 
     Parameters
     ----------
@@ -124,10 +125,10 @@ class ContactState:
         Step time.
     """
 
-    terms: list[Terms]
-    force: Floats
-    size: Floats
-    multipliers: Floats
+    terms: list[Terms] = field(default_factory=list)
+    force: Floats = field(default_factory=partial(np.zeros, 0))
+    size: Floats = field(default_factory=partial(np.zeros, 0))
+    multipliers: Floats = field(default_factory=partial(np.zeros, 0))
     damping: Floats | None = None
     of_end: Floats | None = None
     states: list[NDArray[np.int8]] = field(default_factory=list)
@@ -223,11 +224,6 @@ class RightHandSides:
 def sticking(states: States) -> States:
     """States in which what slips sticks."""
     return [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
-
-
-def no_contact() -> ContactState:
-    """State without pairs, or evaluated without multipliers; new, since checkpoints fill it."""
-    return ContactState([], np.zeros(0), np.zeros(0), np.zeros(0))
 
 
 def discrete_gradient(

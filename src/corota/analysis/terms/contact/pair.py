@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -65,6 +65,8 @@ class Pair:
     ----------
     system : NumberedModel
     item : ContactPair or Tie
+    dofs : ndarray of int, shape (3 n_nodes + 1,)
+        Dof of each variable ``3 node + component``, -1 for none, of which the last has none.
 
     Attributes
     ----------
@@ -83,8 +85,10 @@ class Pair:
         Multipliers of the pair: n, or 2 n with friction and in ties.
     """
 
-    def __init__(self, system: NumberedModel, item: ContactPair | Tie) -> None:
-        self.item = item
+    recomputed: ClassVar[frozenset[str]] = frozenset({"_dofs"})
+
+    def __init__(self, system: NumberedModel, item: ContactPair | Tie, dofs: Ints) -> None:
+        self.item, self._dofs = item, dofs
         self.tied = isinstance(item, Tie)
         self.law = None if isinstance(item, Tie) else item.law
         #: Largest shear traction of friction [force/length^2].
@@ -95,6 +99,8 @@ class Pair:
         #: Whether it acts in the step, and the number of the step in which it began to.
         self.active, self.entered = True, 0
         self.core, self.slave, self.master, self.reach, self.depth = make_core(system, item)
+        self.on_slave = np.zeros(len(system.per_node), bool)
+        self.on_slave[self.slave.node_list] = True
         self.nodes = np.asarray(self.core.nodes, np.int64)
         self.n = len(self.nodes)
         #: Whether friction acts, in some step at least, and its coefficients now.
@@ -114,8 +120,6 @@ class Pair:
         self.width = self.n * (2 if self.two else 1)
         self.first = 0
         self.reference = np.column_stack([system.model.mesh.points, np.zeros(len(system.per_node))])
-        self.on_slave = np.zeros(len(system.per_node), bool)
-        self.on_slave[self.slave.node_list] = True
         self.fixed: Terms | None = None  # of geometrically linear steps
         self.fixed_offset: Floats = np.zeros(0)  # the offset that they were made with
         self.area = self.full.copy()  # areas of pressure laws, kept within an increment
@@ -146,6 +150,7 @@ class Pair:
         self.slid = np.zeros(self.n)  # slip so far [length]
         self.friction_work = 0.0
         self.end_share = 0.5  # of the tractions at the end of an increment in their mean
+        self.share = 1.0  # of those in the equation of the increment
         #: What of it the trapezoidal rule misses, of tractions that grew before the surfaces slid.
         self.beyond_trapezoid = 0.0
         #: A rigid curve as straight pieces in the reference configuration, made when needed.
@@ -168,6 +173,7 @@ class Pair:
         They are those at the present slip rates and the given pressures, shape (n,).
         """
         if isinstance(self.item, ContactPair) and self.rubs:
+            share = share if self.item.friction_ramps else 1.0
             found = self.item.friction_at(step, share, self.rate, np.maximum(pressure, 0.0))
             # Tractions stay unknowns where a coefficient is zero for a time.
             self.friction = np.maximum(found, SAME)
@@ -601,16 +607,20 @@ class Pair:
         out: Ints = corner[closed.any(axis=1) & (state[corner] != OPEN)]
         return out
 
+    def dofs(self, variables: Ints) -> Ints:
+        """Dofs of variables of the core, -1 for none."""
+        return self._dofs[variables]
+
     def add_forces(
-        self, terms: Terms, dofs: Ints, p: Floats, q: Floats, force: Floats, size: Floats | None
+        self, terms: Terms, p: Floats, q: Floats, force: Floats, size: Floats | None = None
     ) -> None:
         """Add the forces of tractions along the gradients of some terms, and their sizes, in place.
 
-        `dofs` of the variables of the terms have the shape (m, v), -1 for none.
+        `force` and `size` have the shape (n_dofs,).
         """
         if not len(terms.constraint):
             return
-        gap, slip = terms.gap_gradient, terms.slip_gradient
+        dofs, gap, slip = self.dofs(terms.variables), terms.gap_gradient, terms.slip_gradient
         shear = q if self.two else None
         _core.add_contact_forces(terms.constraint, dofs, gap, slip, p, shear, force, size)
 

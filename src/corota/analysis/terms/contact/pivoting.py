@@ -342,7 +342,7 @@ class Pivoting:
             column[c.rows] = at + 2 * np.arange(len(c.rows))
             state, slip_direction = base[c.k], slip_directions[c.k]
             acting = terms.acting
-            where = problem.term.dofs(acting.variables)
+            where = pair.dofs(acting.variables)
             i = acting.constraint
             of_open = (column[i] >= 0) & (state[i] == OPEN)
             push = acting.gap_gradient

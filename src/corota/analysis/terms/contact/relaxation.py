@@ -37,8 +37,8 @@ from corota.analysis.failure import ElementFailure
 from corota.analysis.newton import Outcome, newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.equations import SETTLED, ContactEquations
-from corota.analysis.terms.contact.forward import ForwardContact
 from corota.analysis.terms.contact.gaps import CHANGES, PATIENCE, SAME
+from corota.analysis.terms.contact.motion import ForwardContact
 from corota.analysis.terms.contact.tunneling import UNSEEN
 from corota.errors import ConvergenceError, SingularError
 
@@ -77,7 +77,7 @@ def relax(
     """Find an equilibrium by creep; in dynamics (by its `rule`) with the inertia of an increment.
 
     The other parameters and the results are those of
-    :func:`corota.analysis.terms.contact.newton.solve_increment`.
+    :func:`corota.analysis.increment_loop.solve_increment`.
 
     Parameters
     ----------

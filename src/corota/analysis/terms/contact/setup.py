@@ -466,7 +466,8 @@ def make_core(system: NumberedModel, item: ContactPair | Tie) -> Core:
     mesh, pair = system.model.mesh, None if isinstance(item, Tie) else item
     slave = surface(system, item.slave, item)
     master: Surface | None = None
-    if not isinstance(item.master, RigidCurve) and not (pair and pair.itself):
+    itself = pair is not None and pair.itself
+    if not isinstance(item.master, RigidCurve) and not itself:
         master = surface(system, item.master, item)
         if pair and pair.images is not None:
             master = master.repeated(pair.images)
@@ -483,12 +484,12 @@ def make_core(system: NumberedModel, item: ContactPair | Tie) -> Core:
         return core_of(mesh, item, slave, master, reach, np.inf), slave, master, reach, np.inf
     thickness = _thickness(system, slave)
     # Deeper inside a body, the core takes the opposite side for that of another body.
-    same = pair.itself
+    same = itself
     if pair.images is not None and master is not None:
         part = part_of_cells(mesh)
         same = bool(np.isin(part[slave.edges[:, 0]], part[master.edges[:, 0]]).any())
     depth = 0.5 * float(thickness.min()) if same else float(thickness.max())
-    if pair.itself:
+    if itself:
         slave = along_contour(slave, mesh.points)
     if master is not None:
         slave.thickness[:] = _joint(mesh.points, slave, master)

@@ -1,7 +1,8 @@
-"""Contact of central differences: forward-increment Lagrange multipliers.
+"""Contact in motion: forces of central differences, first contact, error of an impact.
 
-The contact forces at the beginning of an increment make its end fit the surfaces (Carpenter,
-Taylor and Katona 1991): with the displacement that the motion would have without them,
+Central differences have forward-increment Lagrange multipliers: contact forces at the beginning of
+an increment make its end fit the surfaces (Carpenter, Taylor and Katona 1991). With the
+displacement that the motion would have without them,
 
     gap + dt G v + dt^2 G M^-1 G^T p >= 0,    p >= 0,
 
@@ -16,6 +17,13 @@ The forces ``z = (p, q)`` of some constraints change their gaps and slips by ``A
 ``A = dt^2 G M^-1 G^T`` is symmetric and at least semidefinite. The set of closed and slipping
 constraints is found by Newton's method; where that cycles, by Lemke's method for the whole
 complementarity problem.
+
+Implicit increments end where separate surfaces meet: a wall does not act on a body in flight, and
+an increment limited only by its own error may end at any depth behind it. The time to contact
+follows from gap, closing velocity and acceleration of the body. At larger distance an increment
+covers most of the gap, because the estimate improves as the surfaces approach; the last one ends a
+ten-thousandth of an edge behind the first contact. Beyond the search distance there is no gap yet:
+an increment that passes through is refused and cut.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -23,7 +31,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -34,6 +42,7 @@ from corota.analysis.terms.contact.gaps import (
     CLOSED,
     COMPLIANCE,
     OPEN,
+    PATIENCE,
     SAME,
     SLIPPING,
     SMALL,
@@ -42,6 +51,7 @@ from corota.analysis.terms.contact.gaps import (
 )
 from corota.errors import ConvergenceError
 from corota.lazy import lazy
+from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -50,8 +60,10 @@ if TYPE_CHECKING:
 
     from corota.analysis.energies import Energies
     from corota.analysis.equations import System
+    from corota.analysis.increment_loop import ContactIncrement
     from corota.analysis.linear.types import Kind
     from corota.analysis.terms.contact.pair import Pair, Terms
+    from corota.analysis.terms.inertia import MotionState
     from corota.arrays import Bools, Floats, Ints
 
     States = NDArray[np.int8]
@@ -240,7 +252,7 @@ class _Increment:
         # Gradients of all gaps and slips, a term per row.
         some = [k for k, terms in enumerate(found) if len(terms.constraint)] or [0]
         self.constraint = np.concatenate([self.first[k] + found[k].constraint for k in some])
-        self.dofs = np.concatenate([self.contact.dofs(found[k].variables) for k in some])
+        self.dofs = np.concatenate([pairs[k].dofs(found[k].variables) for k in some])
         slides = self.two[self.constraint, None]
         self.gradients = (
             joined([found[k].gap_gradient for k in some]),
@@ -619,3 +631,193 @@ class UnilateralConstraints:
             if settled:
                 return z
         return None
+
+
+#: Error in the instant of impact: depth behind the first contact at which an increment ends [slave
+#: edges].
+BEYOND = 1e-4
+#: Gap from which an increment leaves a remainder [slave edges], and the fraction left.
+LEFT = 0.1
+
+
+class Approach:
+    """Times to contact of separate surfaces, and the error of an increment in which they meet.
+
+    Parameters
+    ----------
+    system : System
+    massless : ndarray of bool, shape (n_dofs,)
+        Displacements without mass; their accelerations are meaningless.
+
+    Attributes
+    ----------
+    meets : bool
+        Whether the last requested increment ends after a first contact.
+    limited : bool
+        Whether it was shortened.
+    """
+
+    recomputed: ClassVar[frozenset[str]] = frozenset({"system", "term", "part", "heavy"})
+
+    def __init__(self, system: System, massless: Bools) -> None:
+        self.system, self.term = system, system.term(ContactTerm)
+        self.meets = self.limited = False
+        self.in_a_row = 0
+        #: Displacement of the last increment by node and its time; velocities of nodes without
+        #: mass oscillate about it.
+        self.moved, self.dt = np.zeros((0, 3)), 0.0
+        mesh = system.model.mesh
+        opens = self.term.opens
+        part = part_of_nodes(mesh) if opens else np.full(mesh.n_nodes, -1, np.int64)
+        heavy = np.zeros(len(part), bool)
+        heavy[system.node_of_dof[~massless & ~system.is_rotation]] = True
+        #: Body of each node, -1 for none, and the nodes whose mean acceleration is the body's.
+        self.part, self.heavy = part, heavy & (part >= 0)
+        #: Nodes of bodies, bodies of heavy nodes, and how many each body has of these.
+        self.known, self.owner = part >= 0, part[self.heavy]
+        self.count = np.bincount(self.owner, minlength=part.max(initial=-1) + 1)
+
+    def within(self, now: MotionState, dt: float, least: float) -> float:
+        """The increment, or the shorter one that ends at first contact [time]."""
+        self.meets = self.limited = False
+        term = self.term
+        # Surfaces may also pass closely.
+        if not term.opens or self.in_a_row >= PATIENCE:
+            return dt
+        x, acceleration = term.positions(term.u), self._accelerations(now)
+        rates, until = self._rates(now, acceleration), dt
+        for number, pair in enumerate(term.pairs):
+            if pair.tied:
+                continue
+            terms = pair.gaps_at(term, number, x)
+            apart = pair.apart(terms, None if term.at is None else term.at.states[number])
+            if not apart.any():
+                continue
+            seen = apart & covered(terms.area, pair.full)
+            time, meets = _time_to_contact(pair, terms, seen, rates, acceleration)
+            if time < until:
+                until, self.meets, self.limited = time, meets, True
+        return max(until, min(least, dt))
+
+    def follow(self, before: Floats, after: Floats, dt: float) -> None:
+        """Record an accepted increment between displacements of shape (n_dofs,)."""
+        if not self.term.opens:
+            return
+        self.in_a_row = self.in_a_row + 1 if self.limited else 0
+        self.moved, self.dt = self.system.by_node(after - before), dt
+        self.meets = self.limited = False
+
+    def impact_error(
+        self, contact: ContactIncrement, moved: Floats, energy: float, tolerance: float
+    ) -> float:
+        """Error of an increment in the instant of impact, relative to the allowed one.
+
+        Gaps that close within the increment: the work of contact within it, against a thousandth
+        of the energy for a tolerance of one percent; where a rate condition keeps that at zero, the
+        depth they are left with, against a tenth of an edge. Surfaces that meet for the first time:
+        a hundredth of an edge, which is the depth, or the gap that the increment began with where
+        it was not to end at their first touch.
+
+        Parameters
+        ----------
+        contact : ContactIncrement
+        moved : ndarray, shape (n_dofs,)
+            Displacement of the increment.
+        energy : float
+            Of the motion [force*length].
+        tolerance : float
+            Of the step [1].
+        """
+        term, state = self.term, contact.contact_state
+        if state is None:
+            return 0.0
+        first = self._first_contact(state) / tolerance
+        if term.persistent:
+            depth = 0.0
+            for pair, terms in zip(term.pairs, state.terms, strict=True):
+                if pair.start is not None and pair.law is None and pair.n:
+                    deeper = np.minimum(pair.begun()[0], 0.0) - (terms.bare or terms).gap
+                    edge = float(pair.slave.length.mean())
+                    depth = max(depth, float((deeper / pair.full).max()) / edge)
+            return max(first, 0.1 * depth / tolerance)
+        work = float(state.force @ moved)
+        for k, (pair, terms, (_, q)) in enumerate(term.each(state.terms, state.multipliers)):
+            if pair.rubs:
+                work -= float(q @ terms.slip)
+            if pair.law is not None:
+                before = 0.0 if term.at is None else pair.law_energy(term.at.terms[k])
+                work += pair.law_energy(terms) - before
+        return max(first, 10.0 * abs(work) / (tolerance * energy) if energy > 0.0 else 0.0)
+
+    def _first_contact(self, state: ContactState) -> float:
+        """How late the first contact of surfaces is found [slave edges]."""
+        late = 0.0
+        term = self.term
+        before = term.at
+        x = term.positions(term.u)
+        each = term.each(state.terms, state.multipliers)
+        for number, (pair, terms, (p, q)) in enumerate(each):
+            if pair.tied or not pair.n or before is None or (self.meets and pair.start is None):
+                continue
+            begun = pair.gaps_at(term, number, x)
+            apart = pair.apart(begun, before.states[number])
+            if pair.start is not None:
+                depth = -(terms.bare or terms).gap
+            else:
+                seen = covered(begun.area, pair.full)
+                depth = np.where(seen & (pair.states(terms, p, q) != OPEN), begun.gap, 0.0)
+            if pair.law is None and apart.any():
+                depth = np.where(apart, depth / pair.full, 0.0)
+                late = max(late, float(depth.max()) / float(pair.slave.length.mean()))
+        return late
+
+    def _accelerations(self, now: MotionState) -> Floats:
+        """Mean acceleration of the body of each node, shape (n_nodes, 3)."""
+        out = self.system.by_node(now.a)
+        if not len(self.owner):
+            return out
+        inner, size = self.part[self.known], np.maximum(self.count, 1)
+        for i in (0, 1):
+            sums = np.bincount(self.owner, out[self.heavy, i], len(self.count))
+            out[self.known, i] = (sums / size)[inner]
+        out[:, 2] = 0.0
+        return out
+
+    def _rates(self, now: MotionState, acceleration: Floats) -> Floats:
+        """Velocity of each node, shape (n_nodes, 3)."""
+        out = self.system.by_node(now.v)
+        if self.dt:
+            mean = self.moved[:, :2] / self.dt + 0.5 * self.dt * acceleration[:, :2]
+            out[self.known, :2] = mean[self.known]
+        return out
+
+
+def _time_to_contact(
+    pair: Pair, terms: Terms, seen: Bools, rates: Floats, acceleration: Floats
+) -> tuple[float, bool]:
+    """Time to the end of the next increment towards contact, and whether contact begins there."""
+    if not seen.any():
+        return np.inf, False
+    area = np.where(seen, terms.area, 1.0)
+    edge = float(pair.slave.length.mean())
+    gap = terms.gap / area
+    if pair.law is not None:
+        gap = gap + pair.law.start
+
+    def rate(of: Floats) -> Floats:
+        part = (terms.gap_gradient * of.ravel()[terms.variables]).sum(axis=1)
+        return -np.bincount(terms.constraint, part, pair.n) / area
+
+    speed, growth = rate(rates), rate(acceleration)
+    wide = gap > LEFT * edge
+    way = np.where(wide, (1.0 - LEFT) * gap, gap + BEYOND * edge)
+    # Schemes that close gaps at the end of an increment may start with such small gaps.
+    least = pair.noise if pair.start is not None else BEYOND * edge
+    square = speed**2 + 2.0 * growth * way
+    root = speed + np.sqrt(np.maximum(square, 0.0))
+    meets = seen & (gap > least) & (square >= 0.0) & (root > 0.0)
+    if not meets.any():
+        return np.inf, False
+    time = np.where(meets, 2.0 * way / np.where(meets, root, 1.0), np.inf)
+    first = int(np.argmin(time))
+    return float(time[first]), not bool(wide[first])
