@@ -64,7 +64,7 @@ DEAR, FEW = (1183, ""), 2
 SIZE, LIMIT = 0.5, 30
 FACTORS = (0.5, 2.0)
 #: Not varied: numbers of states, names.
-NAMES = {"gaps.OPEN", "gaps.CLOSED", "gaps.SLIPPING", "contact.WITH_CONTACT"}
+NAMES = {"gaps.OPEN", "gaps.CLOSED", "gaps.SLIPPING"}
 
 
 def counted() -> list[str]:

@@ -59,8 +59,6 @@ start_notes = lazy("corota.analysis.terms.contact.output:start_notes")
 sunk_between = lazy("corota.analysis.terms.contact.output:sunk_between")
 sunk_corner = lazy("corota.analysis.terms.contact.output:sunk_corner")
 
-#: Procedures that support contact and ties between surfaces.
-WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
 #: Damping of stabilized surfaces per stiffness of their nodes and period.
 STABILIZE = 1e-3
 
@@ -237,14 +235,8 @@ class ContactTerm(Term):
         Raises
         ------
         UnsupportedError
-            If its procedure does not support multipliers.
+            If it does not have the conditions of a pair.
         """
-        if self.pairs and step.procedure not in WITH_CONTACT:
-            raise UnsupportedError(
-                f"a {step.procedure} step does not support contact pairs or ties; remove them, "
-                f"or use {' or '.join(WITH_CONTACT)} steps",
-                step.where,
-            )
         self.number += 1
         self.period, self.time = step.period, 0.0
         self.damps = step.procedure == "static"

@@ -27,7 +27,6 @@ from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms, newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm, few
 from corota.analysis.terms.contact.gaps import (
-    CHANGES,
     CLOSED,
     COMPLIANCE,
     OPEN,
@@ -54,7 +53,7 @@ if TYPE_CHECKING:
     from corota.analysis.terms.contact.contact import Each
     from corota.analysis.terms.contact.gaps import ContactState, Kink, Terms
     from corota.analysis.terms.contact.pair import Pair
-    from corota.arrays import Floats, Ints
+    from corota.arrays import Bools, Floats, Ints
 
     States = list[NDArray[np.int8]]
     #: Corrections of dofs and multipliers, and negative pivots; -1 if not symmetric.
@@ -69,9 +68,6 @@ pivoted = lazy("corota.analysis.terms.contact.pivoting:pivoted")
 explanation = lazy("corota.analysis.terms.contact.output:explanation")
 pressures = lazy("corota.analysis.terms.contact.output:pressures")
 
-#: Complementarity tolerance from which only digits are missing: states that do not change any more
-#: are those of the end, and a position on the way is reached.
-SETTLED = 1e-6
 #: Search radius: displacement of an increment found by pivoting, relative to its first correction,
 #: beyond which it counts as a jump to another equilibrium; driven by supports, and by forces, under
 #: which it would pass a limit point unseen.
@@ -171,7 +167,7 @@ class ContactEquations:
         self.inherit_kink()
         z = self.start(u)
         target = np.concatenate([prescribed, z[n:]])
-        most = settings.max_iterations + CHANGES
+        most = settings.max_iterations + WAITED * PATIENCE
         patience = 0 if last_chance else PATIENCE
         more = replace(settings, max_iterations=most, patience=patience, reuse=None)
         start = None
@@ -185,8 +181,9 @@ class ContactEquations:
                         system.pattern.add_diagonal(start.values, sign * added)
         fluids = system.conditions.fluids
         if fluids:
-            known_terms = None if term.at is None else term.at.terms
-            system.conditions.begin_fluids(*pressures(term, known_terms, term.committed), u)
+            terms = None if term.at is None else term.at.terms
+            contact: tuple[Floats, Bools] = pressures(term, terms, term.committed)
+            system.conditions.begin_fluids(*contact, u)
             start = None
         found = newton(self, z, target, step_time, more, start, report, rule)
         while fluids and found.converged and found.at is not None:
@@ -272,7 +269,7 @@ class ContactEquations:
 
         It adds up the whole tractions of a correction, which leaves their rounding.
         """
-        if self.last is None or self.size > SETTLED:
+        if self.last is None or self.size > SMALL:
             return False
         state = at.contact_state
         now = self.term.states(state.terms, state.multipliers, self.last)

@@ -35,9 +35,11 @@ OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Rounding bound: relative difference of lengths, areas, parts of a way and forces that is
 #: rounding.
 SAME = 1e-9
-#: Length over an edge that is none: depth up to which a node touches (a rest of Newton's method, as
-#: where a node of the other side carries both), that a fixed surface may be pressed into another
-#: fixed one, and the slip that turns the friction of a node round whose stiffness does not count.
+#: Rest of Newton's method over its whole, as of a length over an edge: depth up to which a node
+#: touches (as where a node of the other side carries both), that a fixed surface may be pressed
+#: into another fixed one, slip that turns the friction of a node round whose stiffness does not
+#: count, turn of a flat boundary [rad]; residual from which only digits are missing: states that do
+#: not change any more are those of the end, and a position on the way is reached.
 SMALL = 1e-6
 #: Regularization of redundant constraints: compliance of closed ones relative to that of their
 #: nodes: constraints that follow from others then leave a matrix regular, and share the force.
@@ -51,11 +53,9 @@ HALVINGS = 44
 #: kink is searched, and before that is given up.
 WAITED = 3
 #: Tries without progress, or returns of a set of states, before an increment is cut: few that take
-#: more converge.
+#: more converge. The choice of states may take `WAITED` times as many iterations besides those of
+#: Newton's method, and as many in an explicit step.
 PATIENCE = 8
-#: Limit of iterations on the set of states: those that contact may take besides Newton's method,
-#: and those of an explicit step before sweeps.
-CHANGES = 24
 
 
 @dataclass

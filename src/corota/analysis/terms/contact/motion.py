@@ -38,7 +38,6 @@ import numpy as np
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.gaps import (
     AT_ONCE,
-    CHANGES,
     CLOSED,
     COMPLIANCE,
     OPEN,
@@ -46,6 +45,7 @@ from corota.analysis.terms.contact.gaps import (
     SAME,
     SLIPPING,
     SMALL,
+    WAITED,
     ContactState,
     covered,
 )
@@ -501,7 +501,7 @@ class UnilateralConstraints:
         state = np.where(self.ruled & (slope == 0.0), OPEN, state).astype(np.int8)
         soft = self.soft
         seen: set[bytes] = set()
-        for _ in range(CHANGES):
+        for _ in range(WAITED * PATIENCE):
             z = self._forces(state, sense, soft, pressure, slope)
             gap, slip = self._motion(z)
             soft, pressure, slope, settled = self._bent(z, gap)
@@ -603,7 +603,7 @@ class UnilateralConstraints:
         of = np.searchsorted(normal, self.of[tangent])
         bound[np.arange(t), of] = self.friction[tangent] * unit[of] / unit[n:]
         law, soft, eye = normal[ruled], self.soft, np.eye(t)
-        for _ in range(CHANGES):
+        for _ in range(WAITED * PATIENCE):
             pressure, slope = self.law(soft)
             acts = slope[law] < 0.0
             give = np.where(acts, -1.0 / np.where(acts, slope[law], 1.0), 0.0)

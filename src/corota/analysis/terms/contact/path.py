@@ -24,11 +24,12 @@ from corota.analysis.path_system import NOT_CONSERVATIVE, Metric, Point, SmoothP
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import ContactEquations
 from corota.analysis.terms.contact.gaps import (
-    CHANGES,
     CLOSED,
     OPEN,
+    PATIENCE,
     SAME,
     SLIPPING,
+    WAITED,
     RightHandSides,
     covered,
 )
@@ -60,7 +61,7 @@ class ContactPathEquations(ContactEquations):
         If an overlap is to be ramped along the path.
     """
 
-    more_iterations = CHANGES
+    more_iterations = WAITED * PATIENCE
     #: By the control of the path.
     bounded = True
 

@@ -36,8 +36,8 @@ from corota.analysis.energies import Energies
 from corota.analysis.failure import ElementFailure
 from corota.analysis.newton import Outcome, newton
 from corota.analysis.rule import REST, Rule
-from corota.analysis.terms.contact.equations import SETTLED, ContactEquations
-from corota.analysis.terms.contact.gaps import CHANGES, PATIENCE, SAME
+from corota.analysis.terms.contact.equations import ContactEquations
+from corota.analysis.terms.contact.gaps import PATIENCE, SAME, SMALL, WAITED
 from corota.analysis.terms.contact.motion import ForwardContact
 from corota.analysis.terms.contact.tunneling import UNSEEN
 from corota.errors import ConvergenceError, SingularError
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 #: Limit of corrections in a relaxation.
 MOST = 400
 #: Proximal point method: first stiffness of the springs per stiffness of their nodes. The largest
-#: is its inverse; the least, `SETTLED`, has forces within the tolerance of a position.
+#: is its inverse; the least, `SMALL`, has forces within the tolerance of a position.
 FIRST = 1e-2
 #: Factors on this stiffness after a position was reached, and where none was. The mass of a damped
 #: motion grows by the inverse of the first where an element fails.
@@ -109,9 +109,9 @@ class _Creep:
         self.problem = ContactEquations(system, rule)
         self.z = self.problem.start(u)
         self.left = prescribed - u  # that supports still have to move
-        most = settings.max_iterations + CHANGES
+        most = settings.max_iterations + WAITED * PATIENCE
         self.last = replace(settings, max_iterations=most, patience=PATIENCE, reuse=None)
-        tolerance = max(SETTLED, settings.tolerance)
+        tolerance = max(SMALL, settings.tolerance)
         self.each = replace(self.last, tolerance=tolerance)
         self.corrections = 0
         #: Displacements that the bodies have to stay near.
@@ -142,14 +142,14 @@ class _Creep:
                 break
             self.z, self.left = out.u, np.zeros_like(self.left)
             share *= EASED
-            if share >= SETTLED:
+            if share >= SMALL:
                 continue
             out = self._place(0.0)
             if out.converged and self._leaves(out.u):
                 break
             if out.converged:
                 return self._found(out)
-            share, tries = SETTLED * TIGHTENED**2, tries + 1
+            share, tries = SMALL * TIGHTENED**2, tries + 1
             if tries > 2:
                 break
         return self._missed(out)

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import corota._core as _core
-from corota.analysis.terms.contact.gaps import SAME
+from corota.analysis.terms.contact.gaps import AT_ONCE, SAME, SMALL
 from corota.arrays import distinct
 from corota.errors import ModelError
 from corota.mesh.kinds import EDGES
@@ -41,8 +41,6 @@ if TYPE_CHECKING:
 
 #: Default search distance of pairs, in edges.
 REACH = 4.0
-#: Limit of edges times edges that are compared all with all (cost alone).
-MOST_LOOKED_AT = 20_000_000
 
 
 @dataclass
@@ -256,8 +254,8 @@ def line_core(
 
 # -- masters without kinks -----------------------------------------------------------------
 
-#: Turns of the boundary at a node that are smoothed: larger ones are corners, smaller ones none.
-CORNER, NONE = math.radians(50.0), math.radians(0.5)
+#: Turns of the boundary at a node that are smoothed: larger ones are corners.
+CORNER = math.radians(50.0)
 
 
 class Shape(IntEnum):
@@ -313,7 +311,7 @@ def smoothed(points: Floats, master: Surface) -> tuple[Ints, Floats, Ints]:
 def blunt_turns(points: Floats, master: Surface) -> dict[int, float]:
     """Nodes at which a boundary turns, but not sharply, with the angles [rad]."""
     turns = _turns(points, [side for row in master.nodes.tolist() for side in _sides(row)])
-    return {node: abs(turn) for node, turn in turns.items() if NONE < abs(turn) < CORNER}
+    return {node: abs(turn) for node, turn in turns.items() if SMALL < abs(turn) < CORNER}
 
 
 def sharp_corners(x: Floats, edges: Ints) -> list[int]:
@@ -555,26 +553,25 @@ def of_lines(side: Surface) -> bool:
 def _thickness(system: NumberedModel, slave: Surface) -> Floats:
     """Thickness of the body behind edges of its surface, inwards.
 
-    Infinite where there is nothing behind, and for surfaces too large to search.
+    Infinite where there is nothing behind.
     """
     mesh = system.model.mesh
-    boundary = mesh.boundary_edges()
-    if len(boundary) * len(slave.nodes) > MOST_LOOKED_AT:
-        return np.full(1, np.inf)
-    part = part_of_cells(mesh)
+    boundary, part = mesh.boundary_edges(), part_of_cells(mesh)
     boundary = boundary[np.isin(part[boundary[:, 0]], part[slave.edges[:, 0]])]
     ends = np.array([nodes[:2] for nodes in mesh.edge_nodes(boundary)])
     x, inwards = mesh.points, -outward(mesh.points[slave.nodes[:, :2]])
-    start = x[slave.nodes[:, :2]].mean(axis=1)[:, None]
-    first, along = x[ends[:, 0]][None], (x[ends[:, 1]] - x[ends[:, 0]])[None]
-    away, way = first - start, np.broadcast_to(inwards[:, None], (len(inwards), len(ends), 2))
-    det = along[..., 0] * way[..., 1] - along[..., 1] * way[..., 0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        # start + s way = first + t along
-        s = (along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]) / det
-        t = (way[..., 0] * away[..., 1] - way[..., 1] * away[..., 0]) / det
-    hit = (s > SAME * slave.length[:, None]) & (t > -SAME) & (t < 1.0 + SAME)
-    found = np.where(hit, s, np.inf).min(axis=1)
+    start = x[slave.nodes[:, :2]].mean(axis=1)
+    first, along = x[ends[:, 0]], x[ends[:, 1]] - x[ends[:, 0]]
+    found = np.empty(len(start))
+    for own in _chunks(len(start), len(ends)):
+        away, way = first - start[own, None], inwards[own, None]
+        det = along[:, 0] * way[..., 1] - along[:, 1] * way[..., 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            # start + s way = first + t along
+            s = (along[:, 0] * away[..., 1] - along[:, 1] * away[..., 0]) / det
+            t = (way[..., 0] * away[..., 1] - way[..., 1] * away[..., 0]) / det
+        hit = (s > SAME * slave.length[own, None]) & (t > -SAME) & (t < 1.0 + SAME)
+        found[own] = np.where(hit, s, np.inf).min(axis=1)
     found = found[np.isfinite(found)]
     return found if len(found) else np.full(1, np.inf)
 
@@ -611,15 +608,20 @@ def _check_pair(
     _check_shared(system, item, slave, master)
     out_s, out_m = (outward(mesh.points[side.nodes[:, :2]]) for side in (slave, master))
     # No edges face each other: bodies may rotate, but not before contact.
-    facing = -(out_s @ out_m.T).min() if len(out_s) * len(out_m) <= MOST_LOOKED_AT else 1.0
-    towards = _towards(mesh.points, slave, master, out_s)
-    if facing <= 0.0 or not towards:
+    facing = any((out_s[own] @ out_m.T < 0.0).any() for own in _chunks(len(out_s), len(out_m)))
+    if not facing or not _towards(mesh.points, slave, master, out_s):
         raise _refused(
             item,
             f"no edge of {slave.name!r} faces any edge of "
             f"{master.name!r} (their outward normals point away from each other); select the "
             "sides that face each other",
         )
+
+
+def _chunks(n: int, others: int) -> list[slice]:
+    """Parts of n rows, each of which with the others fits into a table of `AT_ONCE` entries."""
+    count = max(1, AT_ONCE // max(others, 1))
+    return [slice(begin, begin + count) for begin in range(0, n, count)]
 
 
 def outward(pieces: Floats) -> Floats:
