@@ -137,11 +137,11 @@ docs: $(DOCS) ## Build the site of the documentation into build/site, warnings a
 	@echo "build/site/index.html"
 
 check-site: docs ## Open every page of the site in a headless Chromium, which must be installed
-	$(BIN)/python -m benchmarks.site_check build/site
+	$(BIN)/python -m benchmarks site_check build/site
 
 bench: $(CORE) ## Install the peers, run all programs side by side (benchmarks/README.md)
-	$(BIN)/python -m benchmarks.side_by_side
-	$(BIN)/python -m benchmarks.bench_tables
+	$(BIN)/python -m benchmarks side_by_side
+	$(BIN)/python -m benchmarks bench_tables
 
 wheel: $(TOOL) ## Build a wheel into dist/ for every Python from 3.10
 	@PYTHON="$(PYTHON)" scripts/check_toolchain.sh

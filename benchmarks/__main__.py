@@ -1,4 +1,4 @@
-"""Run the benchmarks: all, or those named on the command line."""
+"""Run benchmarks: all, those named on the command line, or one with options behind its name."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -8,31 +8,14 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-#: What is not a benchmark by itself.
-HELPERS = {
-    "__init__",
-    "__main__",
-    "common",
-    "cantilever",
-    "problems",
-    "decks",
-    "bench_figures",
+#: Folders of benchmarks.
+FOLDERS = ("speed", "campaigns", "corpora", "studies")
+#: What needs arguments, or so much time that it runs only when it is named.
+NAMED = {
     "before_after",
     "before_after_worker",
-    "fault_readers",
-    "fault_runs",
-    "fault_world",
-    "contact_problems",
-    "contact_case_models",
-    "free_body_decks",
-    "mechanisms",
+    "contact_before_after",
     "mutants",
-    "kill_worker",
-    "restart_cases",
-    "same_bits",
-}
-#: What takes so long that it runs only when it is named.
-LONG = {
     "contact_cases",
     "energy_balance",
     "faults",
@@ -45,22 +28,30 @@ LONG = {
 }
 
 
-def names() -> list[str]:
-    """Benchmarks by module name."""
-    return sorted(path.stem for path in HERE.glob("*.py") if path.stem not in HELPERS)
+def modules() -> dict[str, str]:
+    """Benchmarks: names of their modules with the folder by those without it."""
+    return {
+        path.stem: f"benchmarks.{folder}.{path.stem}"
+        for folder in FOLDERS
+        for path in sorted((HERE / folder).glob("*.py"))
+        if "__main__" in path.read_text(encoding="utf-8")
+    }
 
 
 def main() -> int:
-    """Run one after the other; the number of those that failed."""
-    wanted = sys.argv[1:] or [name for name in names() if name not in LONG]
-    unknown = sorted(set(wanted) - set(names()))
-    if unknown:
-        sys.stderr.write(f"no benchmark {', '.join(unknown)}; there are: {', '.join(names())}\n")
+    """Run one with its options, or one after the other; the number of those that failed."""
+    known, given = modules(), sys.argv[1:]
+    jobs = [[name] for name in given or known if given or name not in NAMED]
+    if given and not set(given) <= set(known):
+        jobs = [given]
+    if jobs[0][0] not in known:
+        there = ", ".join(sorted(known))
+        sys.stderr.write(f"no benchmark {jobs[0][0]}; there are: {there}\n")
         return 64
     failed = 0
-    for name in wanted:
-        command = [sys.executable, "-m", f"benchmarks.{name}"]
-        failed += subprocess.run(command, cwd=HERE.parent, check=False).returncode != 0
+    for name, *options in jobs:
+        command = [sys.executable, "-m", known[name], *options]
+        failed += subprocess.run(command, check=False).returncode != 0
     return min(failed, 63)
 
 

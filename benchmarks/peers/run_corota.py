@@ -9,8 +9,8 @@ import numpy as np
 
 import corota as ct
 import corota.analysis.run  # imported by the first solution otherwise, inside its time
+from benchmarks.corpora.problems import Problem
 from benchmarks.peers.shared import Clock, arguments
-from benchmarks.problems import Problem
 from corota.mesh import Cells
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmarks.mechanisms import SAMPLES, Mechanism, measured
+from benchmarks.corpora.mechanisms import SAMPLES, Mechanism, measured
 
 
 def run(mechanism: Mechanism, cells: int, increments: int) -> dict[str, np.ndarray]:

@@ -1,8 +1,8 @@
 """Compliance of a cantilever by nodal densities and its gradient with JAX-FEM.
 
-``python run_jax_fem.py TASK.npz RESULT.npz``; see ``benchmarks/differentiable.py``. Needs no other
-module of the benchmarks. Where petsc4py is missing a stand-in holds the matrices that JAX-FEM
-passes to SciPy's solver: the only thing that it uses PETSc for there.
+``python run_jax_fem.py TASK.npz RESULT.npz``; see ``differentiable``. Needs no other module of the
+benchmarks. Where petsc4py is missing a stand-in holds the matrices that JAX-FEM passes to SciPy's
+solver: the only thing that it uses PETSc for there.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

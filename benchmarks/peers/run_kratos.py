@@ -12,8 +12,8 @@ import KratosMultiphysics.LinearSolversApplication
 import KratosMultiphysics.StructuralMechanicsApplication as Mechanics
 from KratosMultiphysics import python_linear_solver_factory as solvers
 
+from benchmarks.corpora.problems import Problem
 from benchmarks.peers.shared import MAX_ITERATIONS, Clock, arguments, tolerance
-from benchmarks.problems import Problem
 
 AXES = "XY"
 

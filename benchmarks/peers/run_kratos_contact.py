@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import KratosMultiphysics as Kratos
 
+from benchmarks.corpora.problems import Problem
 from benchmarks.peers.contact_data import ContactData, Face, Pair, Stage
 from benchmarks.peers.run_kratos_problem import parameters, start
 from benchmarks.peers.shared import MAX_ITERATIONS, TOLERANCE, Clock, arguments
-from benchmarks.problems import Problem
 
 
 def contact_data(p: Problem) -> ContactData:

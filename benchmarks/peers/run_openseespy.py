@@ -7,8 +7,8 @@ from importlib.metadata import version
 
 import openseespy.opensees as ops
 
+from benchmarks.corpora.problems import Problem
 from benchmarks.peers.shared import Clock, arguments
-from benchmarks.problems import Problem
 
 #: Its corotational shell converges linearly: it gets the iterations that this takes.
 MAX_ITERATIONS, TOLERANCE = 500, 1e-6

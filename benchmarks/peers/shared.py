@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmarks.problems import Problem
+from benchmarks.corpora.problems import Problem
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -1,3 +1,3 @@
-"""The studies of ``benchmarks.comparison``: each module here is one, and has ``CASES``."""
+"""Tables of the docs: methods against each other, closed forms and other programs."""
 
 # SPDX-License-Identifier: BSD-3-Clause

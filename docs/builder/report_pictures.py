@@ -13,8 +13,8 @@ from pathlib import Path
 from PIL import Image
 
 import corota as ct
-from benchmarks.browser import Browser
-from benchmarks.report_pages import READY
+from benchmarks.campaigns.browser import Browser
+from benchmarks.campaigns.report_pages import READY
 from corota.report import report_job
 
 FOLDER = Path(__file__).resolve().parents[1] / "images"

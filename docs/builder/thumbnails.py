@@ -66,7 +66,7 @@ def draw(results: ct.Results, path: Path) -> None:
 
 
 if __name__ == "__main__":
-    from benchmarks.report_pages import solve_example
+    from benchmarks.campaigns.report_pages import solve_example
 
     FOLDER.mkdir(exist_ok=True)
     wanted = sys.argv[1:]

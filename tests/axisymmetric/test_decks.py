@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.axisymmetric_decks import ANSWERS, generate
-from benchmarks.structure_decks import by_corota, difference
+from benchmarks.corpora.axisymmetric_decks import ANSWERS, generate
+from benchmarks.corpora.structure_decks import by_corota, difference
 from corota.io.deck.write.model import write_deck
 from tests.support.calculix import needs_ccx, run_ccx
 
 STORED = json.loads(ANSWERS.read_text(encoding="utf-8"))
-#: A few of them; ``python -m benchmarks.axisymmetric_decks --stored`` compares with all.
+#: A few of them; ``python -m benchmarks axisymmetric_decks --stored`` compares with all.
 SOME = list(STORED)[:12]
 
 RING = """*NODE

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks import comparison, decks, phase_profile
+from benchmarks.corpora import decks
+from benchmarks.corpora.problems import BUILDERS, Problem
 from benchmarks.peers.run_corota import model_of
-from benchmarks.problems import BUILDERS, Problem
+from benchmarks.speed import phase_profile
+from benchmarks.studies import comparison
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.contact_answers import answer, deeper, same
-from benchmarks.contact_problems import Problem
+from benchmarks.campaigns.contact_answers import answer, deeper, same
+from benchmarks.corpora.contact_problems import Problem
 
 
 def _block(method: str, way: float) -> tuple[Problem, ct.Results]:

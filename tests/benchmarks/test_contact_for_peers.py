@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.contact_for_peers import chosen, data, sheared
-from benchmarks.contact_problems import Problem
+from benchmarks.corpora.contact_for_peers import chosen, data, sheared
+from benchmarks.corpora.contact_problems import Problem
 from benchmarks.peers.contact_ccx import deck
 from benchmarks.peers.contact_data import ContactData, mean
 from benchmarks.peers.contact_kratos import STRIDE, increments

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.holes_onset import by_numpy, by_package, mesh_of
+from benchmarks.studies.holes_onset import by_numpy, by_package, mesh_of
 
 
 @pytest.mark.parametrize("both", [pytest.param(False, marks=pytest.mark.slow), True])

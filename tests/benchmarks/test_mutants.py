@@ -1,11 +1,11 @@
-"""Mutants of ``python -m benchmarks.mutants``: one expression of a function changed."""
+"""Mutants of ``python -m benchmarks mutants``: one expression of a function changed."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 from pathlib import Path
 
-from benchmarks.mutants import mutants
+from benchmarks.campaigns.mutants import mutants
 
 TEXT = """def f(x: int = 3) -> float:
     if not x < 2:

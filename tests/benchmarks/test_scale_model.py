@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks import scale_model
-from benchmarks.scale_model import FREE, Sides, cut, share, tree
+from benchmarks.speed import scale_model
+from benchmarks.speed.scale_model import FREE, Sides, cut, share, tree
 
 Box = tuple[int, int, int, int]
 

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.contact_problems import problem
-from benchmarks.contact_torture import run
+from benchmarks.campaigns.contact_torture import run
+from benchmarks.corpora.contact_problems import problem
 from corota import _core
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Contact problems that stopped with the defaults run to their end, in balance.
 
-They are a sample of ``python -m benchmarks.contact_torture``; each of these stopped before states
+They are a sample of ``python -m benchmarks contact_torture``; each of these stopped before states
 were chosen from the whole linearized problem. Reactions and contact forces must balance.
 """
 
@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.contact_problems import problem
-from benchmarks.contact_torture import run
+from benchmarks.campaigns.contact_torture import run
+from benchmarks.corpora.contact_problems import problem
 from corota.analysis.equations import System
 from corota.analysis.failure import ElementFailure
 from corota.analysis.linear import saddle_point

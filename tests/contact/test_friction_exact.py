@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.friction_exact import tension
+from benchmarks.campaigns.friction_exact import tension
 from corota import _core
 from corota.model.contact import METHODS
 from tests.contracts.test_contact_gaps import LENGTHS, against_rigid, gradients, moved, two_bodies

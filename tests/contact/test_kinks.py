@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.contact_problems import problem
+from benchmarks.corpora.contact_problems import problem
 from corota.results.observer import BaseObserver
 
 #: Slope of the flanks.

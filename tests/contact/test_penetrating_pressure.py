@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.same_bits import Takes
+from benchmarks.campaigns.same_bits import Takes
 
 LENGTH, HEIGHT = 10.0, 2.0
 STIFF = 1e10

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks import objectivity
+from benchmarks.campaigns import objectivity
 from corota.model.contact import METHODS
 from support.pairs import cover
 

@@ -1,4 +1,4 @@
-"""A sample of the random decks of ``python -m benchmarks.free_bodies``.
+"""A sample of the random decks of ``python -m benchmarks free_bodies``.
 
 Equilibrium is computed again from the written results; who is held is known by construction.
 """
@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.free_bodies import run, same_verdict
-from benchmarks.free_body_decks import make
+from benchmarks.campaigns.free_bodies import run, same_verdict
+from benchmarks.corpora.free_body_decks import make
 from support.pairs import quickly
 
 SAMPLE = 60

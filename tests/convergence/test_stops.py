@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.contact_case_models import collapse
+from benchmarks.corpora.contact_case_models import collapse
 from corota.analysis.procedures.path.branches import BranchTracer
 from corota.analysis.procedures.path.plan import PathStalled
 from corota.analysis.procedures.stopping import plateau

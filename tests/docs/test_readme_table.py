@@ -66,7 +66,7 @@ def test_rollup() -> None:
 
 @pytest.mark.filterwarnings("ignore:local strain reaches")
 def test_cantilever_beside_other_programs() -> None:
-    p1 = script("benchmarks/cantilever.py")
+    p1 = script("benchmarks/corpora/cantilever.py")
     points, cells = p1.grid(14)
     blocks = [ct.mesh.Cells("quad4", cells, np.arange(1, len(cells) + 1))]
     model = ct.Model(ct.Mesh(points, blocks))

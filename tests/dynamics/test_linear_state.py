@@ -15,7 +15,7 @@ import pytest
 from scipy.linalg import eigh
 
 import corota as ct
-from benchmarks.preloaded_frequencies import STORED
+from benchmarks.studies.preloaded_frequencies import STORED
 from support.models import cell
 from tests.support.lines import chain
 from tests.support.pairs import cover

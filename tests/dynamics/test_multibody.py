@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.mechanisms import MECHANISMS, SAMPLES, measured, with_beams
-from benchmarks.multibody import answers, largest
+from benchmarks.corpora.mechanisms import MECHANISMS, SAMPLES, measured, with_beams
+from benchmarks.studies.multibody import answers, largest
 
 
 @pytest.mark.parametrize("name", ["pendulum", "slider_crank"])

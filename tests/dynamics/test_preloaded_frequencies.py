@@ -8,7 +8,7 @@ import json
 import numpy as np
 import pytest
 
-from benchmarks.preloaded_frequencies import CASES, STORED, ours
+from benchmarks.studies.preloaded_frequencies import CASES, STORED, ours
 
 #: Linear states that ``test_linear_state.py`` assembles apart, as here and as in CalculiX.
 APART = (

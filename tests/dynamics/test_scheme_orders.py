@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks import scheme_orders
+from benchmarks.studies import scheme_orders
 
 SAMPLE = [
     ("free, Q4D", "generalized_alpha"),

@@ -1,4 +1,4 @@
-"""Gradients of random models beside differences; ``python -m benchmarks.gradients`` has more."""
+"""Gradients of random models beside differences; ``python -m benchmarks gradients`` has more."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.gradients import NAMES, Case, compare, draw
+from benchmarks.campaigns.gradients import NAMES, Case, compare, draw
 from corota import gradients
 
 CASES = [

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.gmsh_files import FOLDER, Facts, differences, read
+from benchmarks.corpora.gmsh_files import FOLDER, Facts, differences, read
 from corota.errors import InputError, UnsupportedError
 
 FACTS = json.loads((FOLDER / "facts.json").read_text(encoding="utf-8"))

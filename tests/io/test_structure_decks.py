@@ -1,7 +1,7 @@
 """Generated decks of beams, shells, masses, joints and CAE's layout agree with CalculiX 2.20.
 
 The answers of ``ccx`` are stored in tests/data/structure_decks.json (made by ``python -m
-benchmarks.structure_decks``, which also runs CalculiX again).
+benchmarks.corpora.structure_decks``, which also runs CalculiX again).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -11,7 +11,14 @@ import json
 
 import pytest
 
-from benchmarks.structure_decks import ANSWERS, COUNT, THEMES, by_corota, difference, generate
+from benchmarks.corpora.structure_decks import (
+    ANSWERS,
+    COUNT,
+    THEMES,
+    by_corota,
+    difference,
+    generate,
+)
 
 STORED = json.loads(ANSWERS.read_text(encoding="utf-8"))
 

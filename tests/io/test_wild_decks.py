@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.corpus import compare
+from benchmarks.corpora.corpus import compare
 
 FOLDER = Path(__file__).parents[1] / "data" / "wild"
 #: x, y, ux, uy of two nodes of each deck, by CalculiX 2.20.

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.same_bits import Takes
+from benchmarks.campaigns.same_bits import Takes
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import SOLVERS
 from support.lines import chain, lines

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import corota as ct
-from benchmarks.outline_drawings import CORPUS, DIALECTS, REFUSED, SHAPES
-from benchmarks.outlines import check
+from benchmarks.corpora.outline_drawings import CORPUS, DIALECTS, REFUSED, SHAPES
+from benchmarks.corpora.outlines import check
 from corota.errors import InputError
 
 pytest.importorskip("gmsh", reason="the extra mesh: make test-mesh", exc_type=ImportError)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.outline_drawings import DIALECTS, SHAPES
+from benchmarks.corpora.outline_drawings import DIALECTS, SHAPES
 from corota.cli import main
 from corota.errors import FileError, InputError
 from corota.outline import circle, outline, polyline

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import corota
-from benchmarks.start_time import ONE
+from benchmarks.speed.start_time import ONE
 from corota.arrays import distinct
 from corota.io.deck.keywords import KEYWORDS
 from corota.lazy import lazy

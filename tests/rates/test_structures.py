@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.same_bits import Takes
+from benchmarks.campaigns.same_bits import Takes
 from corota.verification.plastic_models import CELL
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import corota as ct
-from benchmarks.browser import Browser, find_browser
-from benchmarks.report_pages import READY, aborted, check_page
+from benchmarks.campaigns.browser import Browser, find_browser
+from benchmarks.campaigns.report_pages import READY, aborted, check_page
 from corota.cli import main
 from corota.report import report_job
 from corota.report.records import JobPaths

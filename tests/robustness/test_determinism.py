@@ -11,8 +11,8 @@ from importlib.util import find_spec
 import pytest
 
 import corota as ct
-from benchmarks.restart_cases import DECKS, MODELS
-from benchmarks.same_bits import folder_differences, frame_differences
+from benchmarks.campaigns.same_bits import folder_differences, frame_differences
+from benchmarks.corpora.restart_cases import DECKS, MODELS
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import pytest
 
 import corota as ct
-from benchmarks.restart_cases import DECKS, EXAMPLES, MODELS
+from benchmarks.corpora.restart_cases import DECKS, EXAMPLES, MODELS
 from support.checkpoints import goes_on
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.restart_cases import DECKS, MODELS
+from benchmarks.corpora.restart_cases import DECKS, MODELS
 from corota.cli import main
 from corota.io import atomic_file, job, task_queue
 from corota.io.checksum import fletcher32

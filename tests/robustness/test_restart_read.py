@@ -8,8 +8,8 @@ import shutil
 import pytest
 
 import corota as ct
-from benchmarks.restart_cases import DECKS
-from benchmarks.same_bits import folder_differences, frame_differences
+from benchmarks.campaigns.same_bits import folder_differences, frame_differences
+from benchmarks.corpora.restart_cases import DECKS
 from corota.cli import main
 from tests.support.calculix import needs_ccx, run_ccx
 

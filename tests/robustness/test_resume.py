@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.restart_cases import DECKS, MODELS
-from benchmarks.same_bits import Takes, folder_differences, frame_differences
+from benchmarks.campaigns.same_bits import Takes, folder_differences, frame_differences
+from benchmarks.corpora.restart_cases import DECKS, MODELS
 from corota.analysis.procedures.static import StaticStepper
 from corota.analysis.run import solve
 from corota.analysis.state_tree import UnsuitableState

@@ -1,7 +1,7 @@
 """400 generated decks of several steps beside CalculiX 2.20.
 
 The answers of ``ccx`` are stored in tests/data/deck_family.json (made by ``python -m
-benchmarks.deck_family``, which also runs CalculiX again). Displacements, total reactions (not in
+benchmarks deck_family``, which also runs CalculiX again). Displacements, total reactions (not in
 motion), stresses, frequencies and buckling factors agree to the digits that CalculiX prints in
 linear steps, and to 1e-3 in motion and under large rotations; the exceptions stand in the
 benchmark with their proofs.
@@ -15,8 +15,8 @@ from collections import Counter
 
 import pytest
 
-from benchmarks.deck_family import ANSWERS, EXCEPTIONS, by_corota, full, verdict
-from benchmarks.deck_generator import COUNT, THEMES, generate
+from benchmarks.corpora.deck_family import ANSWERS, EXCEPTIONS, by_corota, full, verdict
+from benchmarks.corpora.deck_generator import COUNT, THEMES, generate
 
 
 @pytest.mark.parametrize("part", range(4))

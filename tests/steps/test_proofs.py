@@ -1,6 +1,6 @@
 """Where CalculiX 2.20 is wrong: what is right, from the definitions.
 
-The exceptions of benchmarks/deck_family.py point here.
+The exceptions of benchmarks/corpora/deck_family.py point here.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

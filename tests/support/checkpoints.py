@@ -6,7 +6,7 @@ from __future__ import annotations
 import warnings
 
 import corota as ct
-from benchmarks.same_bits import Takes, frame_differences
+from benchmarks.campaigns.same_bits import Takes, frame_differences
 from corota.analysis.run import solve
 from corota.results.observer import BaseObserver
 

@@ -1,0 +1,3 @@
+"""Times and memory as ratios inside one run."""
+
+# SPDX-License-Identifier: BSD-3-Clause
