@@ -219,8 +219,7 @@ def test_a_tall_block_slides_before_it_tips(method: str, mu: float, moves: bool)
         assert foot[0] == pytest.approx(1.0 - mu * weight / k, rel=1e-4)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("lower_is_slave", [True, False])
+@pytest.mark.parametrize(("method", "lower_is_slave"), cover(METHODS, [True, False], strength=1))
 def test_a_stack_slides_at_its_weakest_joint(method: str, lower_is_slave: bool) -> None:
     """Three blocks of weight W on each other and a floor; the topmost is drawn. Joints bear W, 2 W,
     3 W with mu = .5, .2, .3: bounds of .5 W, .4 W, .9 W, so the second joint slides with .4 W and

@@ -17,6 +17,7 @@ import pytest
 import corota as ct
 from corota.mesh import Mesh
 from corota.mesh.data import Cells
+from support.pairs import cover
 from tests.support.blocks import METHODS, STIFF, block, reaction, scalar, solve, step_ends
 
 FLOOR = ct.RigidCurve.line((-100.0, 0.0), (100.0, 0.0))
@@ -238,8 +239,7 @@ def test_heat_closes_a_gap_between_two_bars(gap: float, method: str) -> None:
     assert scalar(results, "gap: force x") == pytest.approx(-force, rel=3e-3, abs=1e-6)
 
 
-@pytest.mark.parametrize("mu", [0.0, 0.15])
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("mu", "method"), cover([0.0, 0.15], METHODS, strength=1))
 def test_a_thin_ring_is_pushed_on_a_cone(mu: float, method: str) -> None:
     """A thin ring (R = 50, section 1 x .5) is pushed along a rigid cone of 5 degrees by z: hoop
     force E A z tan(a) / R, radial load that by R, and the push is 2 pi R times it times tan(a +

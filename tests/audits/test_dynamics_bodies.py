@@ -23,8 +23,9 @@ from support.particles import (
 pytestmark = pytest.mark.filterwarnings("ignore:central differences took")
 
 
-@pytest.mark.parametrize("mass", ["consistent", "constant", "lumped"])
-@pytest.mark.parametrize("element", list(CELL))
+@pytest.mark.parametrize(
+    ("element", "mass"), cover(list(CELL), ["consistent", "constant", "lumped"], strength=1)
+)
 def test_free_fall_of_two_materials_in_thickness(element, mass):
     # u = g t^2/2 without stress, work m g h; thickness 2.5, two densities, distorted mesh. Units
     # are N-mm-t-s: g = 9810.
@@ -76,8 +77,12 @@ def test_rayleigh_damping_of_a_spinning_flight(element, scheme):
     np.testing.assert_allclose(angle, 3.0 * flown, rtol=2e-3)
 
 
-@pytest.mark.parametrize("element", ["T3", "T6", "Q4", "Q4I", "Q8", "Q9", "OPT", "Q4D"])
-@pytest.mark.parametrize("mass", ["consistent", "lumped"])
+@pytest.mark.parametrize(
+    ("element", "mass"),
+    cover(
+        ["T3", "T6", "Q4", "Q4I", "Q8", "Q9", "OPT", "Q4D"], ["consistent", "lumped"], strength=1
+    ),
+)
 def test_what_rests_under_gravity_stays_at_rest(element, mass):
     # A static step under gravity, with large deflection, a rigid end that carries a particle with
     # its weight, then motion under the same loads: nothing moves.

@@ -12,7 +12,7 @@ from corota.mesh import Mesh
 from corota.mesh.data import Cells
 from corota.model.loads import BodyForce, Fixed, NodalForce
 from support.audits import CELL
-from support.pairs import quickly
+from support.pairs import cover, quickly
 from support.particles import (
     IMPLICIT,
     LIGHT,
@@ -77,8 +77,10 @@ def test_table_of_total_time_over_two_dynamic_steps(scheme):
     np.testing.assert_allclose([frame.U[1, 0], frame.V[1, 0]], exact, rtol=3e-3)
 
 
-@pytest.mark.parametrize("element", ["Q4", "Q4I", "Q8", "Q9", "T6", "OPT", "Q4D"])
-@pytest.mark.parametrize("mass", ["consistent", "lumped"])
+@pytest.mark.parametrize(
+    ("element", "mass"),
+    cover(["Q4", "Q4I", "Q8", "Q9", "T6", "OPT", "Q4D"], ["consistent", "lumped"], strength=1),
+)
 def test_spinning_preload_is_a_steady_spin(element, mass):
     # A static step under the centrifugal load of W stretches a free ring (held against turning by
     # one point); released with the spin W it must go on turning without vibration: the radius of
@@ -119,8 +121,12 @@ def test_spinning_preload_is_a_steady_spin(element, mass):
             assert np.abs(r - r0).max() < 2e-3 * growth
 
 
-@pytest.mark.parametrize("between", ["frequency", "steady"])
-@pytest.mark.parametrize("scheme", ["newmark", "energy_momentum", "central_difference"])
+@pytest.mark.parametrize(
+    ("between", "scheme"),
+    cover(
+        ["frequency", "steady"], ["newmark", "energy_momentum", "central_difference"], strength=1
+    ),
+)
 def test_linear_procedures_between_do_not_end_a_motion(between, scheme):
     # x = sin(w t)/w v goes on through a frequency or harmonic step: only static steps
     # end a motion, and a harmonic force is no load of a transient.
@@ -162,8 +168,10 @@ def test_direct_integration_goes_on_from_modal_dynamics(scheme):
     np.testing.assert_allclose(last.V[1:, 0], exact[3:], atol=5e-3 * abs(exact[3:]).max())
 
 
-@pytest.mark.parametrize("second", [*IMPLICIT, "central_difference"])
-@pytest.mark.parametrize("first", [*IMPLICIT, "central_difference"])
+@pytest.mark.parametrize(
+    ("first", "second"),
+    cover([*IMPLICIT, "central_difference"], ["central_difference", *IMPLICIT], strength=1),
+)
 def test_schemes_follow_each_other(first, second):
     # A spring pendulum in large motion changes its scheme half way.
     k, length, m, g = 50.0, 1.0, 2.0, 9.81

@@ -58,8 +58,9 @@ def along(mesh: Any, edge: str) -> np.ndarray:
     return nodes[np.argsort(axis @ (axis[np.argmax(np.abs(axis).sum(axis=1))]))]
 
 
-@pytest.mark.parametrize("edge", ["bottom", "right", "top", "left"])
-@pytest.mark.parametrize("element", CELL)
+@pytest.mark.parametrize(
+    ("element", "edge"), cover(CELL, ["bottom", "right", "top", "left"], strength=1)
+)
 def test_pressure_on_every_edge_of_every_element(element: str, edge: str) -> None:
     """Force p t S(chord) and moment -p t (|b|^2 - |a|^2)/2 about the origin, for any curve.
 
@@ -92,8 +93,9 @@ def test_pressure_on_every_edge_of_every_element(element: str, edge: str) -> Non
     assert total == pytest.approx(-moment, rel=1e-7)
 
 
-@pytest.mark.parametrize("edge", ["bottom", "right", "top", "left"])
-@pytest.mark.parametrize("element", CELL)
+@pytest.mark.parametrize(
+    ("element", "edge"), cover(CELL, ["bottom", "right", "top", "left"], strength=1)
+)
 def test_dead_traction_on_every_edge_of_every_element(element: str, edge: str) -> None:
     """Force q t L0, and its moment about the origin from the places where it acts.
 
@@ -294,8 +296,10 @@ def strip(element: str, n: int, L: float, h: float) -> tuple[Any, Any]:
     return mesh, int(np.argmin(np.hypot(mesh.points[:, 0] - L, mesh.points[:, 1] + h / 2)))
 
 
-@pytest.mark.parametrize("element", ["BEAM", "Q8", "Q4D", "Q4I"])
-@pytest.mark.parametrize("what", ["pressure", "weight", "bracket"])
+@pytest.mark.parametrize(
+    ("element", "what"),
+    cover(["BEAM", "Q8", "Q4D", "Q4I"], ["pressure", "weight", "bracket"], strength=1),
+)
 def test_cantilever_far_bent_by_load_on_its_length(element: str, what: str) -> None:
     """Pressure that follows, own weight upward, a dead force on a rigid bracket: rod theory.
 
@@ -600,8 +604,10 @@ def test_pressure_in_steps_of_a_table_is_hydrostatic(element: str) -> None:
         assert reaction == pytest.approx(np.sum(p * mid), rel=1e-7)
 
 
-@pytest.mark.parametrize("axis", ["GRAV", "CENTRIF"])
-@pytest.mark.parametrize("kind", ["CPS8R", "CPE4I", "OPT", "Q4D", "CPS6"])
+@pytest.mark.parametrize(
+    ("axis", "kind"),
+    cover(["GRAV", "CENTRIF"], ["CPS8R", "CPE4I", "OPT", "Q4D", "CPS6"], strength=1),
+)
 def test_body_force_over_steps_under_nlgeom(tmp_path: Path, axis: str, kind: str) -> None:
     """Weight or spin in one step, the body turned by 90 degrees in the next: total force by hand.
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from support.pairs import cover
 
 #: Macroscopic compression that closes the slit, with shear.
 GRADIENT = np.array([[-0.025, 0.012], [0.004, 0.002]])
@@ -68,8 +69,7 @@ def pressed(cell: ct.PeriodicCell, gradient: np.ndarray = GRADIENT, increments: 
     return ct.solve(cell.model, ct.Static(increments=increments), threads=1)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("friction", [0.0, 0.1, 0.8])
+@pytest.mark.parametrize(("method", "friction"), cover(METHODS, [0.0, 0.1, 0.8], strength=1))
 def test_one_cell_is_as_stiff_as_four(method: str, friction: float) -> None:
     """Contact within a block of cells, and across the border of one: open, slipping, sticking."""
     cell = cell_of(slotted(method, friction))

@@ -8,6 +8,7 @@ import corota as ct
 from benchmarks.campaigns.friction_exact import tension
 from corota import _core
 from corota.model.contact import METHODS
+from support.pairs import cover
 from tests.contracts.test_contact_gaps import LENGTHS, against_rigid, gradients, moved, two_bodies
 
 ELASTIC = ct.Elastic(E=1e4, nu=0.3)
@@ -67,8 +68,9 @@ def brake(method, turn, carried=0.0):
     return ct.solve(model, [press, step], threads=1).frames[-1]
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("turn", [20.0, 60.0, 120.0, 180.0, -270.0, 360.0])
+@pytest.mark.parametrize(
+    ("method", "turn"), cover(METHODS, [20.0, 60.0, 120.0, 180.0, -270.0, 360.0], strength=1)
+)
 def test_pad_on_a_turning_drum(method, turn):
     """The moment on the drum is mu N R, N from the pressures; the slip is the arc."""
     frame = brake(method, turn)
@@ -107,8 +109,7 @@ def test_a_common_rotation_changes_no_force():
                 np.testing.assert_allclose(own[:, :, 2], B[:, :, 2], atol=1e-12)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("carried", [45.0, 180.0, 400.0])
+@pytest.mark.parametrize(("method", "carried"), cover(METHODS, [45.0, 180.0, 400.0], strength=1))
 def test_forces_turn_with_a_brake_that_is_carried_round(method, carried):
     still, turned = brake(method, 30.0), brake(method, 30.0, carried)
     np.testing.assert_allclose(turned.C[:, :2], still.C[:, :2], atol=1e-9 * abs(still.C).max())

@@ -21,6 +21,7 @@ from corota.model.paths import CriticalPoint
 from corota.model.steps import Static
 from support.lines import lines
 from support.models import cell
+from support.pairs import cover
 
 DECKS = Path(__file__).parent / "decks"
 
@@ -148,8 +149,9 @@ def frame_beam(curve=((250.0, 0.0),), end="fixed", n=4):
     return model
 
 
-@pytest.mark.parametrize("at_limit", ["stop", "follow"])
-@pytest.mark.parametrize("end", ["fixed", "propped"])
+@pytest.mark.parametrize(
+    ("end", "at_limit"), cover(["fixed", "propped"], ["stop", "follow"], strength=1)
+)
 def test_a_path_ends_where_the_load_does_not_grow(end, at_limit):
     """Linear geometry, perfect plasticity: the collapse load by its mechanism.
 
@@ -194,8 +196,9 @@ HARDENING = ((250.0, 0.0), (450.0, 0.1))
 SLIGHT = ((250.0, 0.0), (450.0, 10.0))
 
 
-@pytest.mark.parametrize("curve", [PLATEAU, HARDENING, SLIGHT])
-@pytest.mark.parametrize("end", ["fixed", "propped"])
+@pytest.mark.parametrize(
+    ("end", "curve"), cover(["fixed", "propped"], [PLATEAU, HARDENING, SLIGHT], strength=1)
+)
 def test_a_path_goes_on_where_the_law_hardens(end, curve):
     model = frame_beam(curve, end)
     results = ct.solve(model, Static(nlgeom=False), threads=1, fields=False)

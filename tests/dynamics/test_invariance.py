@@ -18,6 +18,7 @@ import pytest
 
 import corota as ct
 from support.models import cell
+from support.pairs import cover
 from support.particles import IMPLICIT as SCHEMES
 from tests.support.lines import chain
 
@@ -93,8 +94,7 @@ def test_motion_in_a_frame_that_is_turned_and_drifts(
     assert abs(few - many) <= 6
 
 
-@pytest.mark.parametrize("extra", EXTRAS)
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize(("element", "extra"), cover(ELEMENTS, EXTRAS, strength=1))
 def test_a_free_spin_keeps_its_momenta(element: str, extra: str) -> None:
     """Of energy-momentum to rounding: rest of the mass center, angular momentum."""
     if (element, extra) == ("BEAM", "contact"):

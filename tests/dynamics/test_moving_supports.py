@@ -8,6 +8,7 @@ import pytest
 
 import corota as ct
 from corota.model.loads import Amplitude
+from support.pairs import cover
 
 SCHEMES = ("newmark", "hht", "generalized_alpha", "energy_momentum")
 TIMES = np.linspace(0.0, 2.0, 8001)
@@ -23,8 +24,7 @@ def shaken(time, value, velocity=0.0):
     return model
 
 
-@pytest.mark.parametrize("rigid", [False, True])
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize(("scheme", "rigid"), cover(SCHEMES, [False, True], strength=1))
 def test_base_has_the_acceleration_of_a_smooth_amplitude(scheme, rigid):
     """Closed form: base at 1 - cos 2t, so V = 2 sin 2t, A = 4 cos 2t; second order in dt."""
     time = np.linspace(0.0, 2.0, 4001)
@@ -99,8 +99,9 @@ def on_a_moving_base(support):
     return model, base
 
 
-@pytest.mark.parametrize("rayleigh", [(0.0, 0.0), (0.3, 0.001)])
-@pytest.mark.parametrize("support", ["nodes", "rigid face"])
+@pytest.mark.parametrize(
+    ("support", "rayleigh"), cover(["nodes", "rigid face"], [(0.0, 0.0), (0.3, 0.001)], strength=1)
+)
 def test_modal_base_moves_to_the_last_frame_of_every_step(support, rayleigh):
     """Base at 0.01 sin^2 9t: V = 0.09 sin 18t, A = 1.62 cos 18t; reactions of direct integration.
 

@@ -12,6 +12,7 @@ import pytest
 
 import corota as ct
 from corota.model.attachments import Dashpot
+from support.pairs import cover
 
 MASS = 2.0
 #: A mass on a spring of stiffness 50 from a node that is held; a third node holds the dashpot.
@@ -63,8 +64,7 @@ def integrate(force: object) -> float:
     return float(y[0])
 
 
-@pytest.mark.parametrize("last", [False, True])
-@pytest.mark.parametrize("type_", DAMPERS)
+@pytest.mark.parametrize(("type_", "last"), cover(DAMPERS, [False, True], strength=1))
 def test_a_damped_swing(tmp_path: Path, type_: str, last: bool) -> None:
     """The card with the value stands behind its elements, or before them, as CAE writes it."""
     line, value = DAMPERS[type_]

@@ -77,8 +77,9 @@ def test_every_law_whose_hardening_ends(law: str, element: str) -> None:
     assert pulled(model, 0.03, False) == pytest.approx(YIELD - missing, rel=1e-4)
 
 
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("element", ["Q4I", "Q4S", "Q8", "Q8R"])
+@pytest.mark.parametrize(
+    ("element", "sign"), cover(["Q4I", "Q4S", "Q8", "Q8R"], [1.0, -1.0], strength=1)
+)
 def test_a_beam_turns_at_its_plastic_moment(element: str, sign: float) -> None:
     """sy h^2 / 4 in plane stress, the end turned to twenty times the curvature of yield."""
     model = strip(element, "stress", IDEAL["perfect"], 6, 4)
