@@ -70,7 +70,6 @@ def number(value: object, what: str, where: Location | None = None) -> float:
         The given value.
     what : str
         Its name, at the start of the message.
-    where : Location, optional
 
     Raises
     ------

@@ -58,10 +58,8 @@ def choose(value: object, known: Iterable[str], what: str, where: Location | Non
     ----------
     value : object
         The given value.
-    known : iterable of str
     what : str
         The kind of name, such as ``"element"``.
-    where : Location, optional
 
     Raises
     ------

@@ -82,12 +82,7 @@ class DistributedLoad:
 
 
 class DistributedLoads:
-    """The active distributed loads, and how a step changes them.
-
-    Parameters
-    ----------
-    system : NumberedModel
-    """
+    """The active distributed loads, and how a step changes them."""
 
     def __init__(self, system: NumberedModel) -> None:
         self.system = system

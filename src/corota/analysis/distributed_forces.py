@@ -104,13 +104,7 @@ class Distribution(ABC):
 
 
 class BodyLoad(Distribution):
-    """Gravity or centrifugal force of some elements.
-
-    Parameters
-    ----------
-    system : NumberedModel
-    item : BodyForce
-    """
+    """Gravity or centrifugal force of some elements."""
 
     def __init__(self, system: NumberedModel, item: BodyForce, mass: str) -> None:
         self.system, self.item, self.mass = system, item, mass

@@ -31,7 +31,6 @@ class ElectrostaticPressure(Distribution):
 
     Parameters
     ----------
-    system : NumberedModel
     nodes : ndarray, shape (n, 3)
         Of each edge, the third repeated from the first where it is straight.
     thickness : ndarray, shape (n, 3)

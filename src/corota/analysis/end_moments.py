@@ -29,7 +29,6 @@ def add_end_moments(
 
     Parameters
     ----------
-    system : System
     fields : list of PointFields
         Of the own blocks.
     u : ndarray, shape (n_dofs,)

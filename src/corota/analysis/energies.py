@@ -55,10 +55,6 @@ NEGLIGIBLE_ENERGY = 1e-12
 class Energies:
     """The energy balance of one analysis.
 
-    Parameters
-    ----------
-    system : System
-
     Attributes
     ----------
     work, viscous, contact : float
@@ -229,12 +225,8 @@ class Balance:
 
     Parameters
     ----------
-    system : System
-    step : Dynamic
     now : MotionState
         Where it starts.
-    inertia : Inertia
-    account : Energies
     """
 
     recomputed: ClassVar[frozenset[str]] = frozenset({"inertia"})

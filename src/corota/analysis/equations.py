@@ -53,9 +53,6 @@ class System(NumberedModel):
 
     Parameters
     ----------
-    model : Model
-    solver : LinearSolver
-    threads : int
     steps : sequence of Step, optional
         See :class:`NumberedModel`.
     """
@@ -150,7 +147,6 @@ class System(NumberedModel):
 
         Parameters
         ----------
-        nlgeom : bool
         about_linear : bool
             Look at small motions about the state of a geometrically linear step: its stress, on
             the reference shape, has a stiffness, and so have loads and constraints there. This is

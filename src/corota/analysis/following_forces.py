@@ -35,7 +35,6 @@ class FollowingTraction(Distribution):
 
     Parameters
     ----------
-    system : NumberedModel
     nodes : ndarray, shape (n, 3)
         Of each edge, the third repeated from the first where it is straight.
     thickness : ndarray, shape (n, 3)
@@ -147,7 +146,6 @@ class TurningForce(Distribution):
 
     Parameters
     ----------
-    system : NumberedModel
     nodes : ndarray of int, shape (n,)
         Each once, and with a rotation.
     dof : int

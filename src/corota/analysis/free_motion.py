@@ -31,7 +31,6 @@ def name_motion(system: NumberedModel, error: SingularError, ratio: float) -> Si
 
     Parameters
     ----------
-    system : NumberedModel
     error : SingularError
         Its equation and mode are those of the unknowns.
     ratio : float
@@ -73,7 +72,6 @@ def describe(system: NumberedModel, modes: Floats) -> str:
 
     Parameters
     ----------
-    system : NumberedModel
     modes : ndarray, shape (n_modes, n_dofs)
     """
     from corota.mesh.parts import stiff_part_of_cells

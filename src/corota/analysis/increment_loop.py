@@ -122,12 +122,8 @@ class IncrementLoop:
 
     Parameters
     ----------
-    system : System
-    step : Step
     number : int
         Of the step, from 1.
-    state : State
-    observers : Observers
     save : callable
         Called with state, increment, load factor and scalars of every increment for output.
     """
@@ -297,7 +293,6 @@ class Attempt:
     ----------
     target : float
         Step time at its end [time].
-    outcome : Outcome
     contact : ContactIncrement or None
         None where nothing was solved.
     reason : str
@@ -318,8 +313,6 @@ class NewtonStepper(Stepper):
 
     Parameters
     ----------
-    loop : IncrementLoop
-    step : Static or Dynamic
     stops : list of float
         Step times that must be hit exactly.
     """

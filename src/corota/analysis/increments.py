@@ -29,7 +29,6 @@ class Increments:
 
     Parameters
     ----------
-    step : Step
     stops : sequence of float
         Step times that must be hit exactly.
     """

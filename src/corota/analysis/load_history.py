@@ -16,10 +16,6 @@ if TYPE_CHECKING:
 class LoadHistory:
     """Numbers over a step: from `begin` to `end`, or `end` times an amplitude.
 
-    Parameters
-    ----------
-    n : int
-
     Attributes
     ----------
     begin, end : ndarray, shape (n,)

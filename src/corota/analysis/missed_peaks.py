@@ -63,7 +63,6 @@ def missed_peaks(peaks: list[Peak], pairs: list[ContactPair]) -> list[str]:
     peaks : list of Peak
         Of each pair, over the increments of the static steps; in motion the scheme bounds the
         error of an increment.
-    pairs : list of ContactPair
     """
     notes: list[str] = []
     for (_, (begin, _, before), (step, time, most), (end, _, after)), pair in zip(

@@ -107,12 +107,10 @@ class Outcome:
 
     Parameters
     ----------
-    converged : bool
     u : ndarray, shape (n_dofs,)
         Last trial, equilibrium if converged.
     at : Evaluation
         Evaluation at `u`.
-    iterations : int
     sizes : list of float
         Residual before the first iteration and after each.
     negative : int
@@ -147,24 +145,18 @@ def newton(
 
     Parameters
     ----------
-    system : Corrections
     u : ndarray, shape (n_dofs,)
         Converged displacement of the increment before; not changed.
     prescribed : ndarray, shape (n_dofs,)
         Target of the prescribed dofs, `u` elsewhere.
     step_time : float
         Time at which loads are taken.
-    settings : Settings
     start : Evaluation, optional
         Evaluation at `u` and `step_time`, if it is known.
     report : callable, optional
         Called with iteration number, residual norms, largest correction and a note.
     rule : Rule
         What the increment makes of its unknowns.
-
-    Returns
-    -------
-    Outcome
 
     Raises
     ------

@@ -44,9 +44,6 @@ class NumberedModel:
 
     Parameters
     ----------
-    model : Model
-    solver : LinearSolver
-    threads : int
     steps : sequence of Step, optional
         Their supports keep edges of drilling elements straight, as those of the model do.
 

@@ -179,12 +179,7 @@ class PathSystem(Protocol):
 
 
 class SmoothPath:
-    """A system without contact on a path.
-
-    Parameters
-    ----------
-    system : System
-    """
+    """A system without contact on a path."""
 
     more_iterations = 0
     not_conservative = NOT_CONSERVATIVE

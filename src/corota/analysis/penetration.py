@@ -49,7 +49,6 @@ class PenetratingPressure(Distribution):
 
     Parameters
     ----------
-    system : NumberedModel
     chain : Edges
         Of the slave surface of contact, and of the surface that leads there.
     opposite : Edges or None

@@ -42,8 +42,6 @@ class Scales:
 
     Parameters
     ----------
-    system : NumberedModel
-    conditions : Conditions
     terms : list of Term
         All terms of the equation.
 

@@ -29,13 +29,7 @@ RIGID = 1e-9
 
 
 class StageRecorder:
-    """Adds the measures of all stages to the scalars of each frame.
-
-    Parameters
-    ----------
-    system : System
-    model : Model
-    """
+    """Adds the measures of all stages to the scalars of each frame."""
 
     def __init__(self, system: System, model: Model) -> None:
         self.paths: dict[str, StagePath] = {}
@@ -109,14 +103,7 @@ class StageRecorder:
 
 
 class _Body:
-    """Nodes that move together, and the unknowns that move them.
-
-    Parameters
-    ----------
-    system : System
-    stage : Stage
-    where : str or ndarray of int
-    """
+    """Nodes that move together, and the unknowns that move them."""
 
     def __init__(self, system: System, stage: Stage, where: str | Ints) -> None:
         mesh = system.model.mesh
@@ -174,7 +161,6 @@ def condensed_stiffness(
         The tangent of all unknowns.
     body : _Body
         Moves as a rigid body.
-    base : _Body or None
     place : ndarray, shape (2,)
         Current place of the point that forces act on and moments are about [length].
 

@@ -54,14 +54,12 @@ class State:
         Reactions at `u` where inertia takes part in them; else they follow from `at`.
     negative : int
         Negative pivots of the tangent, -1 if unknown.
-    counters : dict of str to int
     v, a : ndarray, shape (n_dofs,), or None
         Velocity and acceleration; None before any motion.
     carried : tuple of ndarray or None
         The very arrays `u` and `v` that a step of the energy-momentum scheme ended with, and the
         velocities of its mid-point relations: the elements still carry the rates that their momenta
         are made of.
-    critical : list of CriticalPoint
     modes : list of Modes
         Found so far.
     notes : list of str

@@ -23,7 +23,6 @@ class Progress(BaseObserver):
 
     Parameters
     ----------
-    terminal : Terminal
     verbose : int
         1: a line for each increment on terminals too; 2: each iteration.
     """

@@ -207,7 +207,6 @@ class TextFile:
 
     Parameters
     ----------
-    path : Path
     keep : bool
         Continue at the end of an existing file instead of emptying it.
     """
@@ -274,7 +273,6 @@ def replaced(path: Path, suffix: str = "") -> Iterator[Path]:
 
     Parameters
     ----------
-    path : Path
     suffix : str
         End of the temporary name, for writers that choose the format by it.
 

@@ -42,8 +42,6 @@ class Saved:
 
     Parameters
     ----------
-    path : Path
-    state : Checkpoint
     files : dict
         State of the files of the run, see :class:`corota.io.job.JobFiles`.
     job : str

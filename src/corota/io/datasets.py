@@ -75,8 +75,6 @@ class Series:
     Parameters
     ----------
     made : h5py.h5d.DatasetID
-    dtype : dtype
-    chunks : tuple of int
     level : int
         Of gzip, 0 for none.
     fill : float

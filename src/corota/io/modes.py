@@ -15,10 +15,6 @@ from corota.results.results import Frame, Results
 def as_results(results: Results) -> Results:
     """Buckling and vibration modes as frames of a separate results object.
 
-    Parameters
-    ----------
-    results : Results
-
     Returns
     -------
     Results

@@ -23,7 +23,6 @@ def open_to_write(path: str | PathLike[str], flags: int) -> int:
 
     Parameters
     ----------
-    path : path-like
     flags : int
         Of :func:`os.open`; the file is created if it is missing.
 

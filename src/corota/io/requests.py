@@ -37,13 +37,7 @@ def due(output: Output, frame: Frame, step: Step, model: Model) -> bool:
 
 
 class Requests:
-    """Output requests of a run.
-
-    Parameters
-    ----------
-    model : Model
-    steps : sequence of Step
-    """
+    """Output requests of a run."""
 
     def __init__(self, model: Model, steps: Sequence[Step]) -> None:
         self._model, self._steps, self._in_force = model, steps, in_force(steps)

@@ -195,8 +195,6 @@ def write(results: Results, path: str | PathLike[str], **options: Any) -> Path:
 
     Parameters
     ----------
-    results : Results
-    path : path-like
     **options
         Of the format's writer.
 

@@ -30,7 +30,6 @@ def read_dxf(path: Path, layers: Collection[str] = ()) -> Drawing:
 
     Parameters
     ----------
-    path : Path
     layers : collection of str
         Layers to take; all but ``Defpoints`` if empty.
 

@@ -34,7 +34,6 @@ def mesh_four_sided(faces: Faces, names: list[str], size: float, quadratic: bool
         Of the parts.
     size : float
         Largest side of a cell [length].
-    quadratic : bool
 
     Raises
     ------

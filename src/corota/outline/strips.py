@@ -32,7 +32,6 @@ class Side:
 
     Parameters
     ----------
-    curve : Curve
     back : bool
         Whether it is run from its last point to its first.
     """
@@ -116,12 +115,7 @@ def sides_of(loops: Loops) -> list[Side]:
 
 
 class Rays:
-    """Rays through the material, from one side of an outline to the opposite one.
-
-    Parameters
-    ----------
-    sides : sequence of Side
-    """
+    """Rays through the material, from one side of an outline to the opposite one."""
 
     def __init__(self, sides: Sequence[Side]) -> None:
         self.first = np.vstack([side.points[:-1] for side in sides])
@@ -158,7 +152,6 @@ class _Strip:
 
     Parameters
     ----------
-    sides : tuple of int
     spans : list of list of float
         First and last length along each; where the first side begins, the second ends.
     thickness : float
@@ -211,10 +204,8 @@ def cut(loops: Loops, size: float, through: int) -> Faces:
 
     Parameters
     ----------
-    loops : Loops
     size : float
         Largest side of a cell [length].
-    through : int
     """
     sides = sides_of(loops)
     strips = _strips(loops, sides, size)

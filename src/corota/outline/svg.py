@@ -30,7 +30,6 @@ def read_svg(path: Path, layers: Collection[str] = ()) -> Drawing:
 
     Parameters
     ----------
-    path : Path
     layers : collection of str
         Layers or names to take; all if empty.
 
@@ -212,7 +211,6 @@ class _Pen:
     Parameters
     ----------
     matrix : ndarray, shape (2, 3)
-    name, source : str
     """
 
     def __init__(self, matrix: Floats, name: str, source: str) -> None:

@@ -48,7 +48,6 @@ class Drawing:
 
     Parameters
     ----------
-    results : Results
     name : str
         Variable as :mod:`corota.results.variables` spells it.
     per_cell : bool
@@ -404,7 +403,6 @@ def boundary(results: Results, frame: int = -1) -> Ints:
     ----------
     results : Results
         With the variable ``PEEQ``.
-    frame : int
 
     Returns
     -------

@@ -133,7 +133,6 @@ def draw_path(ax: Any, x: Floats, y: Floats, results: ResultSource, *, legend: b
     x, y : ndarray, shape (n_frames,)
     results : Results
         Their frames contain stability and critical points.
-    legend : bool
     """
     stable = np.array([f.scalars.get("stable", 1.0) != 0.0 for f in results.frames])
     named: set[bool] = set()

@@ -22,7 +22,6 @@ def law_curves(checks: Sequence[LawCheck], path: str | PathLike[str] | None = No
 
     Parameters
     ----------
-    checks : sequence of LawCheck
     path : path-like, optional
         Picture to write.
 

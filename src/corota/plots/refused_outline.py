@@ -32,7 +32,6 @@ def refused_outline(
 
     Parameters
     ----------
-    error : OutlineError
     path, ax, dpi
         As of :func:`corota.plots.contour`.
 

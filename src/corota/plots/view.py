@@ -28,7 +28,6 @@ class Viewer:
 
     Parameters
     ----------
-    results : Results
     name : str
         Variable; ``MISES``, or ``U`` where nothing is stressed, by default.
     scale : float

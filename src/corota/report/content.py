@@ -61,7 +61,6 @@ class Content:
 
     Parameters
     ----------
-    title : str
     chunks : dict of str to bytes
         ``model``, ``history``, ``frame-0``, ...
     notes : list of str
@@ -112,7 +111,6 @@ def content_of_job(job: JobPaths, *, limit: float = LIMIT, title: str = "") -> C
 
     Parameters
     ----------
-    job : JobPaths
     limit : float
         Size of the page [megabytes].
     title : str
@@ -309,7 +307,6 @@ def history_chunk(
 
     Parameters
     ----------
-    records : Records
     facts : dict
         Name, versions and counts, for the tables.
     notes : list of str
@@ -352,7 +349,6 @@ def units_of(names: Sequence[str], system: str) -> dict[str, str]:
 
     Parameters
     ----------
-    names : sequence of str
     system : str
         The units of the model, such as ``mm, N, t, s``.
     """

@@ -43,12 +43,7 @@ NO_FORCE = 1e-9
 
 
 class NodalArrays:
-    """Arrays at the nodes of the frames of results, by their names in the page.
-
-    Parameters
-    ----------
-    results : Results
-    """
+    """Arrays at the nodes of the frames of results, by their names in the page."""
 
     def __init__(self, results: Results) -> None:
         self.results = results

@@ -37,13 +37,7 @@ ITERATION = (
 
 @dataclass(frozen=True)
 class JobPaths:
-    """Folder and name of a job.
-
-    Parameters
-    ----------
-    folder : Path
-    name : str
-    """
+    """Folder and name of a job."""
 
     folder: Path
     name: str
@@ -66,7 +60,6 @@ def find_job(job: str | PathLike[str], folder: str | PathLike[str] | None = None
 
     Parameters
     ----------
-    job : path-like
     folder : path-like, optional
         Where the files are; beside `job`, or the current folder by default.
 
@@ -107,8 +100,6 @@ class Records:
         In the order of :data:`ITERATION`.
     cut_backs : list of dict
         ``step, increment, attempt, reason, dt``, and ``after``: number of iterations before.
-    steps : list of dict
-    notes : list of str
     units : dict of str to str
         Units of the headings that have one.
     start, end : dict
@@ -211,12 +202,7 @@ class Tail:
 
 
 class JobRecords:
-    """Records of a job, brought up to date by :meth:`update`.
-
-    Parameters
-    ----------
-    job : JobPaths
-    """
+    """Records of a job, brought up to date by :meth:`update`."""
 
     def __init__(self, job: JobPaths) -> None:
         self.job, self.records = job, Records()

@@ -39,12 +39,7 @@ TRIES = 4
 
 
 class JobWatch:
-    """Data of a job for a page, from its current files.
-
-    Parameters
-    ----------
-    job : JobPaths
-    """
+    """Data of a job for a page, from its current files."""
 
     def __init__(self, job: JobPaths) -> None:
         self.job = job
@@ -223,7 +218,6 @@ class PageServer(ThreadingHTTPServer):
 
     Parameters
     ----------
-    job : JobPaths
     port : int
         Any free one by default.
 

@@ -30,11 +30,6 @@ class Store:
     name of its sweep and a checksum: a line that was edited, or put together from others, is
     refused.
 
-    Parameters
-    ----------
-    path : Path or None
-    job : Job
-
     Raises
     ------
     FileError

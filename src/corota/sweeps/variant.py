@@ -53,7 +53,6 @@ class Outcome:
 
     Parameters
     ----------
-    values : dict of str to float
     error : str
         Empty for a row that ended.
     seconds : float

@@ -44,7 +44,6 @@ class Value:
     ----------
     quantity : str
         What it is, with the mesh or element that it was measured on.
-    reference, measured : float
     tolerance : float
         Largest error.
     kind : {"relative", "absolute", "at least", "at most"}
@@ -134,7 +133,6 @@ class Picture:
 
     Parameters
     ----------
-    subject : Results or Model
     variable : str
         As ``corota plot --field`` takes it; ignored for a model.
     scale : float
@@ -156,7 +154,6 @@ class Problem:
 
     Parameters
     ----------
-    title, group : str
     source : str
         Where the problem and its reference values are from.
     certainty : str

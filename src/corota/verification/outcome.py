@@ -16,13 +16,10 @@ class Outcome:
 
     Parameters
     ----------
-    name : str
-    values : list of Value
     seconds : float
         Of the measurement.
     error : str
         Why there are no values.
-    study : Study, optional
     """
 
     name: str

@@ -47,10 +47,8 @@ def write_page(problem: Problem, outcome: Outcome, folder: str | os.PathLike[str
 
     Parameters
     ----------
-    problem : Problem
     outcome : Outcome
         With its study, if there is one.
-    folder : path-like
     """
     target = prepare(folder)
     figures = []

@@ -20,7 +20,6 @@ def measure(name: str, full: bool = False, pages: str = "") -> Outcome:
 
     Parameters
     ----------
-    name : str
     full : bool
         Run its convergence study too.
     pages : str
@@ -70,7 +69,6 @@ def run(
 
     Parameters
     ----------
-    chosen : sequence of Problem
     done : callable
         Called with each outcome as it arrives.
     full, pages

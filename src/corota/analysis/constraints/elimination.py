@@ -38,7 +38,6 @@ class LinearizedConstraints:
 
     Parameters
     ----------
-    constraints : Constraints
     u : ndarray, shape (n_dofs,)
     g : sparse array, shape (n_dependent, n_dofs)
         Dependent dofs by independent ones.
@@ -148,7 +147,6 @@ class Constraints:
 
     Parameters
     ----------
-    model : Model
     start : ndarray of int, shape (n_nodes + 1,)
     carried : ndarray of int, shape (n_nodes,)
         Dofs of each node that elements carry.

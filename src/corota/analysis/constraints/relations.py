@@ -30,7 +30,6 @@ class Relation(ABC):
     masters : ndarray of int, shape (m,)
     what : str
         The relation in a message.
-    where : Location or None
     """
 
     dependent: Ints
@@ -86,7 +85,6 @@ class LinearRelation(Relation):
     Parameters
     ----------
     row : ndarray, shape (m,)
-    constant : float
     rotates : ndarray of bool, shape (1 + m,)
         Whether the dependent, and each master, is a rotation.
     """

@@ -121,7 +121,6 @@ class Builder:
 
     Parameters
     ----------
-    model : Model
     start : ndarray of int, shape (n_nodes + 1,)
         First dof of each node and the total.
     axes : dict of int to ndarray, shape (2, 2)

@@ -26,11 +26,9 @@ class Factor:
     Parameters
     ----------
     matrix : scipy CSC array, shape (n, n)
-    symmetric : bool
     node : ndarray of int, shape (n,)
         Node of each unknown; unknowns of one node are contiguous.
     multiplier : ndarray of bool, shape (n,)
-    threads : int
 
     Attributes
     ----------

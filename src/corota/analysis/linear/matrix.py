@@ -204,13 +204,7 @@ class SymmetricPattern:
 
 
 class AssembledPattern(SymmetricPattern):
-    """The pattern of the elements, with products computed by the core.
-
-    Parameters
-    ----------
-    core : corota._core.Problem
-    communicator : Communicator
-    """
+    """The pattern of the elements, with products computed by the core."""
 
     def __init__(self, core: Problem, communicator: Communicator = ALONE) -> None:
         node = core.node_of_dof.astype(np.int64)

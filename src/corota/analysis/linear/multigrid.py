@@ -36,7 +36,6 @@ class PetscMultigrid(Petsc):
     ----------
     symmetric : bool
         Must be true.
-    communicator : Communicator, optional
 
     Attributes
     ----------

@@ -25,7 +25,6 @@ class Rows:
 
     Parameters
     ----------
-    communicator : Communicator
     indptr : ndarray of int, shape (n + 1,)
         Start of each column of the pattern of this process.
     indices : ndarray of int, shape (nnz,)

@@ -50,7 +50,6 @@ class SaddlePointSystem:
 
     Parameters
     ----------
-    system : NumberedModel
     n : int
         Multipliers.
     kept : int
@@ -145,8 +144,6 @@ class SaddlePointSystem:
 
         Parameters
         ----------
-        at : Evaluation
-        coupling : Coupling
         force : ndarray, shape (n_dofs, k)
             Right-hand sides of equilibrium.
         rhs : ndarray, shape (n, k)

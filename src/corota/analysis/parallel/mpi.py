@@ -67,7 +67,6 @@ class Processes(Communicator):
     ----------
     mpi : module
         ``mpi4py.MPI``.
-    world : mpi4py.MPI.Comm
     """
 
     def __init__(self, mpi: ModuleType, world: MPI.Comm) -> None:

@@ -37,7 +37,6 @@ def carried_bodies(system: System, u: Floats, prescribed: Floats) -> Floats | No
 
     Parameters
     ----------
-    system : System
     u : ndarray, shape (n_dofs,)
         At the beginning of the increment.
     prescribed : ndarray, shape (n_dofs,)

@@ -144,8 +144,6 @@ class ExplicitStepper(Stepper):
 
     Parameters
     ----------
-    loop : IncrementLoop
-    step : Dynamic
     stops : list of float
         Step times that are shown.
     """
@@ -443,12 +441,7 @@ class ExplicitStepper(Stepper):
 
 
 class Envelope:
-    """Smallest and largest values of the increments between two frames.
-
-    Parameters
-    ----------
-    system : System
-    """
+    """Smallest and largest values of the increments between two frames."""
 
     def __init__(self, system: System) -> None:
         self.columns = [np.flatnonzero(system.component == i) for i in (0, 1)]
@@ -525,7 +518,6 @@ class Known:
 
     Parameters
     ----------
-    system : System
     mass : ndarray, shape (n_dofs,)
     first : float
         Kinetic energy at the start [force*length].

@@ -38,7 +38,6 @@ class FreeMass:
 
     Parameters
     ----------
-    system : System
     mass : ndarray, shape (n_dofs,)
 
     Attributes

@@ -23,12 +23,7 @@ LARGEST_TURN = 1.0
 
 
 class FreeFlight:
-    """Bodies without supports and constraints.
-
-    Parameters
-    ----------
-    system : System
-    """
+    """Bodies without supports and constraints."""
 
     def __init__(self, system: System) -> None:
         self.system = system

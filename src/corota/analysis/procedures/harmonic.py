@@ -56,13 +56,7 @@ def steady_state_step(loop: IncrementLoop, step: SteadyState, stops: list[float]
 
 
 class HarmonicStepper(Stepper):
-    """One frequency after the other.
-
-    Parameters
-    ----------
-    loop : IncrementLoop
-    step : SteadyState
-    """
+    """One frequency after the other."""
 
     def __init__(self, loop: IncrementLoop, step: SteadyState) -> None:
         self.system, self.state, self.step = loop.system, loop.state, step

@@ -30,7 +30,6 @@ class LinearFields:
 
     Parameters
     ----------
-    system : System
     u : ndarray, shape (n_dofs,)
         The state about which the response is linear.
     """

@@ -49,13 +49,7 @@ def modal_step(loop: IncrementLoop, step: ModalDynamic, stops: list[float]) -> N
 
 
 class ModalStepper(Stepper):
-    """Increments of the modal coordinates, exact for inputs that are linear in time.
-
-    Parameters
-    ----------
-    loop : IncrementLoop
-    step : ModalDynamic
-    """
+    """Increments of the modal coordinates, exact for inputs that are linear in time."""
 
     advice = "allow more (INC=), or take larger increments"
 

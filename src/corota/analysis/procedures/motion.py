@@ -68,7 +68,6 @@ class Driven:
 
     Parameters
     ----------
-    constrained : ndarray of bool
     u, v, a : ndarray
         Displacement, velocity and acceleration, which mean nothing elsewhere.
     """
@@ -84,13 +83,8 @@ class Motion(Rule):
 
     Parameters
     ----------
-    system : System
-    inertia : Inertia
-    start : MotionState
-    dt : float
     driven : Driven
         Prescribed motion at the end.
-    damping : Damping
 
     Attributes
     ----------
@@ -131,7 +125,6 @@ class NewmarkMotion(Motion):
     ----------
     system, inertia, start, dt, driven, damping
         As of :class:`Motion`.
-    scheme : Scheme
     """
 
     def __init__(
@@ -289,10 +282,6 @@ class EndForces:
     Schemes that weigh the equation between both ends have all forces of the end. The
     energy-momentum scheme has those of the middle: stress and loads are taken again, inertia and
     damping are extrapolated linearly from the last two middles.
-
-    Parameters
-    ----------
-    system : System
 
     Attributes
     ----------

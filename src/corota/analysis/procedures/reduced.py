@@ -85,10 +85,6 @@ class Reduced:
 
     Parameters
     ----------
-    system : System
-    state : State
-    step : ModalDynamic or SteadyState
-    number : int
     forces : ndarray, shape (n_dofs, nf)
         Patterns of the loads.
     moves : ndarray, shape (n_dofs, ns)

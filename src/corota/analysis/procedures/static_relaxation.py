@@ -110,7 +110,6 @@ class _Sizes:
 
     Parameters
     ----------
-    ladder : tuple of Rung
     first : bool
         Whether it is the first increment.
 

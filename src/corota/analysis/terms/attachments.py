@@ -17,10 +17,6 @@ if TYPE_CHECKING:
 class Attachments:
     """Point masses and dashpots of a model by dof.
 
-    Parameters
-    ----------
-    system : System
-
     Attributes
     ----------
     mass : ndarray, shape (n_dofs,)

@@ -42,7 +42,6 @@ class ComplexStiffness:
 
     Parameters
     ----------
-    lin : LinearMotion
     rates : ndarray, shape (k,)
         All circular frequencies of the response [rad/time].
     """

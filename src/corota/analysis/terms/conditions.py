@@ -65,10 +65,6 @@ KNOWN = 2
 class Conditions(Term):
     """The loads and supports that act now.
 
-    Parameters
-    ----------
-    system : NumberedModel
-
     Attributes
     ----------
     factors : LoadFactors

@@ -80,7 +80,6 @@ def damping_matrix(
 
     Parameters
     ----------
-    system : System
     u : ndarray, shape (n_dofs,)
         The committed displacement.
     per_stiffness : float

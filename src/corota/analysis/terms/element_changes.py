@@ -27,10 +27,6 @@ class ElementChanges:
 
     Nodes that no element has any more stay where they are.
 
-    Parameters
-    ----------
-    system : NumberedModel
-
     Attributes
     ----------
     removed : ndarray of bool, shape (n_cells,)

@@ -31,7 +31,6 @@ class Elements(Term):
 
     Parameters
     ----------
-    system : NumberedModel
     conditions : Conditions
         Provides the temperatures.
     """
@@ -98,7 +97,6 @@ class Elements(Term):
             Velocities that the mid-point rule starts from.
         mass : str
             Kind of the mass matrix.
-        at : Evaluation
 
         Returns
         -------

@@ -69,7 +69,6 @@ class Inertia(Term):
 
     Parameters
     ----------
-    system : System
     kind : {"consistent", "constant", "lumped"}
     massless : ndarray of bool, shape (n_nodes,), optional
         Nodes whose mass the other nodes of their elements carry.

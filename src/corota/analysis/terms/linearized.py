@@ -49,7 +49,6 @@ class Linearized:
 
     Parameters
     ----------
-    system : System
     u : ndarray, shape (n_dofs,)
         The committed displacement, or a neighbor of it.
     multipliers : ndarray, shape (n_multipliers,), optional
@@ -287,7 +286,6 @@ class LinearMotion(Linearized):
 
     Parameters
     ----------
-    system : System
     u : ndarray, shape (n_dofs,)
     kind : {"consistent", "constant", "lumped"}
         Of the mass.

@@ -20,11 +20,6 @@ if TYPE_CHECKING:
 class NodalForces:
     """The nodal forces that act now.
 
-    Parameters
-    ----------
-    system : NumberedModel
-    factors : LoadFactors
-
     Attributes
     ----------
     history : LoadHistory

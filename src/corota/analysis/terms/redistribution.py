@@ -46,7 +46,6 @@ def set_moving_mass(system: NumberedModel, kind: str, massless: Bools | None) ->
 
     Parameters
     ----------
-    system : NumberedModel
     kind : {"consistent", "constant", "lumped"}
     massless : ndarray of bool, shape (n_nodes,), or None
 

@@ -24,11 +24,6 @@ if TYPE_CHECKING:
 class Supports:
     """The supports that act now.
 
-    Parameters
-    ----------
-    system : NumberedModel
-    factors : LoadFactors
-
     Attributes
     ----------
     constrained : ndarray of bool, shape (n_dofs,)
@@ -70,7 +65,6 @@ class Supports:
 
         Parameters
         ----------
-        items : iterable of Fixed
         once : bool
             Refuse a dof that is given two values; the same one twice is one. Of decks the later
             value counts, with a note.

@@ -18,13 +18,7 @@ if TYPE_CHECKING:
 
 
 class Temperatures:
-    """The absolute temperatures of the nodes, initially those of the model.
-
-    Parameters
-    ----------
-    system : NumberedModel
-    factors : LoadFactors
-    """
+    """The absolute temperatures of the nodes, initially those of the model."""
 
     def __init__(self, system: NumberedModel, factors: LoadFactors) -> None:
         self.system, self.factors = system, factors

@@ -61,7 +61,6 @@ class TermOutput:
     ----------
     contact : ndarray, shape (n_nodes, 5), or None
         See :attr:`corota.results.Frame.C`.
-    scalars : dict of str to float
     pairs : dict of str to ndarray, shape (n_nodes, 5)
         See :attr:`corota.results.Frame.pairs`.
     """
@@ -175,7 +174,6 @@ class Term(Protocol):
         ----------
         at : Evaluation
             The equilibrium, with multipliers.
-        states : list of ndarray
         tolerance : float
             Share of the largest multiplier, and of the size of the model, that is rounding.
         """

@@ -85,8 +85,6 @@ class FreeStrains:
 
     Parameters
     ----------
-    core : corota._core.Problem
-    model : Model
     blocks : sequence of BlockOfCells
         Of the elements in the core.
     communicator : Communicator

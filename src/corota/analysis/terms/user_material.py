@@ -66,13 +66,7 @@ class _Block:
 
 
 class UserBlocks:
-    """The blocks of a model with materials in Python.
-
-    Parameters
-    ----------
-    core : corota._core.Problem
-    blocks : sequence of BlockOfCells
-    """
+    """The blocks of a model with materials in Python."""
 
     def __init__(self, core: _core.Problem, blocks: Sequence[BlockOfCells]) -> None:
         self.core = core

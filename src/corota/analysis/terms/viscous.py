@@ -60,7 +60,6 @@ class ViscousElements:
 
     Parameters
     ----------
-    system : System
     per_stiffness : float
         Of the whole model; that of materials is added [time].
     """
@@ -126,7 +125,6 @@ class ViscousElements:
             Velocities, or the increment that forces work on over `dt`.
         dt : float
             Time between the states, 0 for an instant.
-        weight : float
         values : ndarray, shape (nnz,)
             Upper triangle, added to in place.
 

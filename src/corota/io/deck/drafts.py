@@ -353,10 +353,8 @@ class AttachedDraft:
 
     Parameters
     ----------
-    type : str
     name : str
         Its element set.
-    card : Card
     nodes : list of list of Draft
         For each element its nodes, not yet looked up.
     labels : list of int

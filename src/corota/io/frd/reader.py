@@ -51,10 +51,6 @@ class _Source:
 def read_frd(path: str | PathLike[str]) -> Results:
     """Read a ``.frd`` file, text or binary, of CalculiX or of Corota.
 
-    Parameters
-    ----------
-    path : path-like
-
     Returns
     -------
     Results

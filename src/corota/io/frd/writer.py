@@ -78,14 +78,11 @@ class FrdWriter:
 
     Parameters
     ----------
-    path : Path
-    model : Model
     steps : sequence of Step
         Their ``*NODE FILE``, ``*EL FILE`` and ``*CONTACT FILE`` requests choose what is written;
         without any, all are written.
     options : FileOptions, optional
         A list of fields goes before the requests.
-    binary : bool
     resume : dict, optional
         Continue the existing file from such a :attr:`state`.
     sections : ndarray of int, shape (n_cells,), optional
@@ -383,8 +380,6 @@ def write_frd(results: Results, path: Path, binary: bool = False, **options: Any
 
     Parameters
     ----------
-    results : Results
-    path : Path
     binary : bool
         Numbers in 4 bytes each instead of text.
     """

@@ -60,10 +60,8 @@ class Stream:
 
     Parameters
     ----------
-    reader : Reader
     start : int
         Byte after the line that opens the section.
-    section : str
     """
 
     def __init__(self, reader: Reader, start: int, section: str) -> None:
@@ -193,7 +191,6 @@ class Reader:
     ----------
     path : str
         Shown in messages.
-    data : bytes
     """
 
     def __init__(self, path: str, data: bytes) -> None:

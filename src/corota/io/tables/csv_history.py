@@ -122,8 +122,6 @@ class Histories:
 
     Parameters
     ----------
-    model : Model
-    steps : sequence of Step
     extra : sequence of str
         See :func:`requested_nodes`.
     """
@@ -226,7 +224,6 @@ class CsvWriter:
 
     Parameters
     ----------
-    path : Path
     units : Units, optional
         For the headings.
     """

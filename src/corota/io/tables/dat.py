@@ -84,10 +84,8 @@ def dat_blocks(model: Model, outputs: Sequence[Output], frame: Frame) -> str:
 
     Parameters
     ----------
-    model : Model
     outputs : sequence of Output
         Others than print requests are ignored.
-    frame : Frame
     """
     tables = {
         "node print": _node_tables,

@@ -41,7 +41,6 @@ def statistics(
     ----------
     what : str
         Names of the surfaces.
-    time : float
     gap, last : str
         Blank within a title, and the title of the last table, in which CalculiX's two tables
         differ.

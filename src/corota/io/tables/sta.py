@@ -34,7 +34,6 @@ def sta_line(frame: Frame, attempt: int, dt: float) -> str:
 
     Parameters
     ----------
-    frame : Frame
     attempt : int
         From 1.
     dt : float
@@ -50,7 +49,6 @@ def cvg_line(info: Iteration, largest: float) -> str:
 
     Parameters
     ----------
-    info : Iteration
     largest : float
         Largest displacement increment so far [length]; the correction is in percent of it.
     """
@@ -76,7 +74,6 @@ def sta_failed(
 
     Parameters
     ----------
-    step, increment, attempt, iterations : int
     reached : tuple of float
         Total and step time reached so far [time].
     dt : float

@@ -78,7 +78,6 @@ class Grid:
 
     Parameters
     ----------
-    model : Model
     sections : ndarray of int, shape (n_cells,), optional
         Section group of each cell; those of the model by default.
     parts : ndarray of int, shape (n_cells,), optional

@@ -31,7 +31,6 @@ class Revolution:
 
     Parameters
     ----------
-    model : Model
     angle : float
         Of the last section [degrees], up to 360.
 

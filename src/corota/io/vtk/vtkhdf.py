@@ -89,8 +89,6 @@ class VtkhdfWriter:
 
     Parameters
     ----------
-    path : Path
-    model : Model
     options : FileOptions, optional
         Fields, their precision and compression, values at quadrature points.
     run : str

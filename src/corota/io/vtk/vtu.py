@@ -37,9 +37,6 @@ def vtu_bytes(
 
     Parameters
     ----------
-    model : Model
-    frame : Frame
-    averaging : Averaging
     sections : ndarray of int, shape (n_cells,), optional
         Section group of each cell; those of the model by default.
     """
@@ -101,7 +98,6 @@ class PvdWriter:
     ----------
     path : Path
         The ``.pvd``; its stem names the others.
-    model : Model
     """
 
     def __init__(

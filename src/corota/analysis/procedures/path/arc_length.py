@@ -41,7 +41,6 @@ def path_step(loop: IncrementLoop, path: ArcLength | DisplacementControl) -> Non
     ----------
     loop : IncrementLoop
         Of a static step.
-    path : ArcLength or DisplacementControl
 
     Raises
     ------

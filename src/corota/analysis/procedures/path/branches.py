@@ -48,10 +48,8 @@ class Branch:
 
     Parameters
     ----------
-    station : Station
     direction : ndarray, shape (n,)
         From the bifurcation point, of unit length in the displacements.
-    iterations, attempts : int
     """
 
     station: Station

@@ -109,7 +109,6 @@ class Plane:
     ----------
     target, direction : ndarray, shape (n_dofs,)
         Displacement of the increment, and normal of the plane.
-    target_factor, direction_factor : float
     counted : ndarray of bool, shape (n_dofs,)
     weight : float
         Length of a unit of load factor [length].

@@ -36,7 +36,6 @@ class Corrected:
     ----------
     point : Point or None
         Equilibrium, if it was found.
-    iterations : int
     sizes : list of float
         Residuals, the first before the first correction.
     reason : str
@@ -66,23 +65,16 @@ def correct(
 
     Parameters
     ----------
-    system : PathSystem
     base : Point
         Where the increment starts.
     guess : Point
         Satisfies the control, with prescribed dofs at the values of its load factor.
     period : float
         Step time of load factor one [time].
-    control : Control
-    settings : Settings
     report : callable, optional
         Called with iteration, residual norms, largest correction and load factor.
     loose : bool
         Whether what moves freely may be brought to a hold.
-
-    Returns
-    -------
-    Corrected
     """
     done = Corrected(None)
     system.restart(loose, guess.at)

@@ -46,12 +46,10 @@ class Plan:
         Sizes of increments, in units of the path (see :class:`Metric`).
     fixed : bool
         Never change the size.
-    ends : list of End
     increments : int
         End after so many; 0 for no such end.
     row : Row, optional
         Displacement control; its ``value`` is the increment of the displacement.
-    spherical, locate, switch, stop_at_limit : bool
     side : int
         Sign of the mode along which another branch is entered.
     branch : int
@@ -79,16 +77,13 @@ class Increment:
 
     Parameters
     ----------
-    point : Point
     tangent : Tangent
         Direction in which the path continues.
-    iterations, attempts : int
     size : float
         Length of the increment, in units of the path.
     negative : int
         Negative pivots, -1 if unknown; at a critical point those before it.
     control : {"arc", "displacement", "load", "mode"}
-    critical : Critical or None
     last : bool
         Whether the path ends here.
     closed : bool

@@ -65,7 +65,6 @@ class Critical:
 
     Parameters
     ----------
-    point : Point
     after : Station
         The nearest point that was solved behind it.
     kind : {"limit", "bifurcation", "kink"}
@@ -97,7 +96,6 @@ def softest_mode(system: PathSystem, start: Floats | None) -> tuple[float, Float
 
     Parameters
     ----------
-    system : PathSystem
     start : ndarray, shape (n,), or None
         A guess.
 

@@ -74,14 +74,12 @@ class PathTracer(ABC):
 
     Parameters
     ----------
-    system : PathSystem
     start : Point
         Committed equilibrium.
     period : float
         Step time of load factor one [time].
     settings : Settings
         Of Newton's method.
-    plan : Plan
     report : callable, optional
         Called with attempt, iteration, residual norms, largest correction, load factor and size.
     cut_back : callable, optional

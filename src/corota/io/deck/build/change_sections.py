@@ -23,7 +23,6 @@ def change_sections(
 
     Parameters
     ----------
-    model : Model
     values : ndarray, shape (n_cells,)
     same : float
         Value of cells whose section stays; springs always keep theirs.

@@ -65,10 +65,6 @@ class _General:
 
     Parameters
     ----------
-    deck : Deck
-    model : Model
-    sets : Sets
-    draft : GeneralDraft
     default : str
         Interaction of pairs that no line names.
     """

@@ -32,12 +32,7 @@ PLANAR_BEAMS = {"B21", "B22", "B23", "PIPE21"}
 
 
 class LoadBuilder:
-    """Makes supports and loads.
-
-    Parameters
-    ----------
-    targets : Targets
-    """
+    """Makes supports and loads."""
 
     def __init__(self, targets: Targets) -> None:
         self.targets, self.deck, self.sets = targets, targets.deck, targets.sets

@@ -82,12 +82,7 @@ def _alike(
 
 
 class SectionBuilder:
-    """Gives the cells of a model their sections.
-
-    Parameters
-    ----------
-    targets : Targets
-    """
+    """Gives the cells of a model their sections."""
 
     def __init__(self, targets: Targets) -> None:
         self.targets, self.deck, self.sets = targets, targets.deck, targets.sets

@@ -24,12 +24,6 @@ if TYPE_CHECKING:
 class Targets:
     """Looks up names and numbers in the mesh that a deck made.
 
-    Parameters
-    ----------
-    deck : Deck
-    meshes : MeshBuilder
-    model : Model
-
     Attributes
     ----------
     at : View

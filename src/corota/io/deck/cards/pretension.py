@@ -64,10 +64,8 @@ class PretensionBuilder:
 
     Parameters
     ----------
-    deck : Deck
     model : Model
         With the sets of its mesh.
-    sets : Sets
     """
 
     def __init__(self, deck: Deck, model: Model, sets: Sets) -> None:

@@ -136,7 +136,6 @@ def build_johnson_cook(
 
     Parameters
     ----------
-    draft : MaterialDraft
     elastic : tuple of float
         Young's modulus and Poisson's ratio.
     heated : bool

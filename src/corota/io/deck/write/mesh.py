@@ -26,12 +26,6 @@ def write_deck_mesh(mesh: Mesh, path: Path, title: str = "") -> None:
 
     Line and point cells are omitted. Blanks and commas in set names become ``_``.
 
-    Parameters
-    ----------
-    mesh : Mesh
-    path : Path
-    title : str
-
     Raises
     ------
     FileError

@@ -60,15 +60,9 @@ def write_deck(
 
     Parameters
     ----------
-    model : Model
-    path : path-like
     steps : Step or sequence of Step, optional
         Steps to write; by default those of the model, or one static step if it has loads and no
         step.
-
-    Returns
-    -------
-    Path
 
     Raises
     ------

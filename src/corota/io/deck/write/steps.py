@@ -107,7 +107,6 @@ class _Says:
 
     Parameters
     ----------
-    writer : Writer
     step : Step
     index : int
         From 1.
