@@ -63,6 +63,23 @@ def test_faults_are_named(law: ct.UserMaterial, fault: str) -> None:
     assert fault in " ".join(found.faults)
 
 
+def test_a_law_that_does_not_repeat_or_heals_is_named() -> None:
+    """Stress that drifts with every call, and a plastic strain that follows the strain."""
+    calls = []
+
+    def odd(strain: Any, state: Any, plane: str) -> Any:
+        calls.append(strain)
+        stress = strain @ C.T + 1e-9 * len(calls)
+        given = np.broadcast_to(C, (*strain.shape, 3))
+        return stress, given, state, {"PEEQ": np.abs(strain).max(axis=-1)}
+
+    found = check_material(ct.UserMaterial(odd))
+    assert found.faults[-2:] == [
+        "the same strain path gives different stresses",
+        "PEEQ falls along a path",
+    ]
+
+
 def test_a_law_that_makes_energy_is_named() -> None:
     """Stress that runs ahead of a turning strain: an antisymmetric part does work in a cycle."""
     spinning = C + np.array([[0.0, 0.0, -200.0], [0.0, 0.0, 0.0], [200.0, 0.0, 0.0]])

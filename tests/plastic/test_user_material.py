@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota.check.material import check_material
 from corota.model import elements
-from corota.verification.contract import check_material, random_path
 from corota.verification.plastic_models import cook, perforated_strip
 from support.pairs import quickly
 
@@ -61,21 +61,13 @@ def core() -> ct.Mises:
 
 
 def test_contract_of_both() -> None:
-    """The contract test runs on any material, and it can fail."""
-    check_material(core())
-    check_material(core(), "strain")
-    check_material(ct.UserMaterial(j2, members=4))
-
-    def wrong(strain: np.ndarray, state: np.ndarray, plane: str) -> Any:
-        stress, tangent, *rest = j2(strain, state, plane)
-        return stress, 1.01 * tangent, *rest
-
-    with pytest.raises(AssertionError, match="derivative"):
-        check_material(ct.UserMaterial(wrong, members=4))
+    """The law in Python keeps what the core's keeps."""
+    for law in (core(), ct.UserMaterial(j2, members=4)):
+        assert check_material(law).faults == []
 
 
 def test_points_agree_with_the_core() -> None:
-    path = random_path(5, size=0.01)
+    path = np.cumsum(np.random.default_rng(5).uniform(-1e-3, 1e-3, (60, 3)), axis=0)
     mine = ct.UserMaterial(j2, members=4).respond(path)
     theirs = core().respond(path)
     assert np.abs(mine["stress"] - theirs["stress"]).max() < 1e-9 * SY

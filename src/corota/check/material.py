@@ -27,6 +27,8 @@ TANGENT_ERROR, TURN_ERROR, ENERGY_ERROR = 1e-4, 1e-8, 2e-2
 ANGLE = 0.7
 #: Outputs of laws that are work per volume beside the recoverable energy.
 WORKS = ("PWORK", "CWORK", "DMENER")
+#: Outputs of laws that never fall.
+GROWING = {"PEEQ", "PDISS"}
 
 
 def strain_paths(size: float) -> dict[str, Floats]:
@@ -67,6 +69,10 @@ class LawCheck(Brief):
         work, over the largest work; None for laws that do not give them.
     created : float
         Work gained in a closed cycle over the largest work; 0 if none is.
+    repeats : bool
+        Whether the same path gives the same stress again.
+    falls : list of str
+        Equivalent plastic strain or dissipation, where they fall along a path.
     curves : dict
         Strain and stress by path, each (n, 3), for the picture.
     """
@@ -78,6 +84,8 @@ class LawCheck(Brief):
     objectivity: float | None
     energy: float | None
     created: float
+    repeats: bool = True
+    falls: list[str] = field(default_factory=list)
     curves: dict[str, tuple[Floats, Floats]] = field(default_factory=dict, repr=False)
 
     @property
@@ -98,6 +106,9 @@ class LawCheck(Brief):
             )
         if not self.created <= ENERGY_ERROR:
             found.append(f"a closed cycle gains energy ({self.created:.1e} of its largest work)")
+        if not self.repeats:
+            found.append("the same strain path gives different stresses")
+        found += [f"{name} falls along a path" for name in self.falls]
         return found
 
 
@@ -143,6 +154,8 @@ def check_material(
     top = float(np.abs(rest).max())
     tangent = asymmetry = turned = created = 0.0
     energy: float | None = 0.0
+    repeats = True
+    falls: set[str] = set()
     curves = {}
     for name, whole in strain_paths(size).items():
         coarse = whole[np.linspace(0, len(whole) - 1, COARSE + 1).astype(int)[1:]]
@@ -159,6 +172,11 @@ def check_material(
         answer = _respond(material, fine, plane)
         stress = answer["stress"]
         curves[name] = (fine, stress)
+        repeats &= np.array_equal(stress, _respond(material, fine, plane)["stress"])
+        for key in GROWING & answer.keys():
+            least = -1e-12 * max(float(np.abs(answer[key]).max()), 1e-300)
+            if np.diff(answer[key], prepend=0.0).min() < least:
+                falls.add(key)
         before = np.vstack([np.zeros(3), fine[:-1]])
         mean = 0.5 * (stress + np.vstack([np.zeros(3), stress[:-1]]))
         work = np.cumsum(((fine - before) * mean).sum(axis=1))
@@ -178,6 +196,8 @@ def check_material(
         None if material.oriented else turned,
         energy,
         max(created, 0.0),
+        repeats,
+        sorted(falls),
         curves,
     )
 
