@@ -47,13 +47,13 @@ if TYPE_CHECKING:
     Each = tuple[Pair, Terms, tuple[Floats, Floats]]
 
 # Parts that models without contact do not need.
-check_side = lazy("corota.analysis.terms.contact.tunneling:check_side")
+check_side = lazy("corota.analysis.terms.contact.setup:check_side")
 guided_round_note = lazy("corota.analysis.terms.contact.output:guided_round_note")
 contact_output = lazy("corota.analysis.terms.contact.output:output")
 what_gives_way = lazy("corota.analysis.terms.contact.output:gives_way")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 near_side = lazy("corota.analysis.terms.contact.kinks:near_side")
-passed_through = lazy("corota.analysis.terms.contact.tunneling:passed_through")
+passed_through = lazy("corota.analysis.terms.contact.output:passed_through")
 facet_note = lazy("corota.analysis.terms.contact.output:facet_note")
 start_notes = lazy("corota.analysis.terms.contact.output:start_notes")
 sunk_between = lazy("corota.analysis.terms.contact.output:sunk_between")
@@ -332,7 +332,7 @@ class ContactTerm(Term):
         if isinstance(item, Tie):
             self._start_tie(pair, x)
             return
-        check_side(self.system, pair, x)
+        check_side(self.system, item, pair.slave, x)
         if pair.slave.pointwise:
             # Lines keep the side that the other body is on at the start.
             pair.core.search(x)

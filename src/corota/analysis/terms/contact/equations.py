@@ -38,7 +38,6 @@ from corota.analysis.terms.contact.gaps import (
     RightHandSides,
     sticking,
 )
-from corota.analysis.terms.contact.tunneling import outside, passed
 from corota.errors import SingularError
 from corota.lazy import lazy
 
@@ -595,9 +594,9 @@ class ContactEquations:
                 "increment"
             )
         for k, (pair, terms, (p, q)) in enumerate(self.pairs(at.contact_state)):
-            starts = partial(outside, self.term, k, moves)
+            starts = partial(pair.outside, self.term, k, moves)
             states = partial(pair.states, terms, p, q)
-            found = passed(pair, old, new, states, terms, starts)
+            found = pair.passed(old, new, states, terms, starts)
             if len(found):
                 return (
                     f"node {self.term.label(pair, int(found[0]))} passed through the "

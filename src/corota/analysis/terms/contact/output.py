@@ -15,14 +15,19 @@ import numpy as np
 from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, SMALL, WAITED, covered, mean
 from corota.analysis.terms.contact.setup import (
     CORNER,
+    alone,
     blunt_turns,
+    chords,
     core_of,
     of_lines,
+    rotated,
     sharp_corners,
+    signed_distances,
 )
-from corota.analysis.terms.contact.tunneling import NAMED, alone, signed_distances
 from corota.arrays import distinct
-from corota.model.contact import ContactPair, RigidCurve
+from corota.mesh.parts import part_of_nodes
+from corota.model.contact import ContactPair, RigidCurve, edges_or_nodes
+from corota.results.rigid import rigid_curves
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,6 +38,7 @@ if TYPE_CHECKING:
     from corota.analysis.terms.contact.pair import Pair, Terms
     from corota.arrays import Floats, Ints
     from corota.mesh import Mesh
+    from corota.model.model import Model
 
 
 def output(
@@ -189,6 +195,10 @@ def resultant(
 
 
 # -- messages --------------------------------------------------------------------------
+
+#: Notes alone: depth of a penetration [edges], or height of facets over an overlap, from which it
+#: is reported; half of it where a pair does not press at all.
+NAMED = 0.05
 
 #: Message alone: part that counts as the whole: of the force of a pair that a node carries alone,
 #: of a friction bound that is used up, of an area.
@@ -554,3 +564,71 @@ def _deepest(pair: Pair, mesh: Mesh, x: Floats) -> tuple[float, int]:
         if depth[k] > worst:
             worst, node = float(depth[k]), int(core.nodes[k])
     return worst, node
+
+
+def passed_through(model: Model, u: Floats) -> list[str]:
+    """Notes on parts of bodies in no pair that lie behind a rigid curve or in another body.
+
+    `u` has the displacements and rotations of all nodes at the end, shape (n_nodes, 3).
+    """
+    mesh, part, notes = model.mesh, part_of_nodes(model.mesh), []
+    points, x = mesh.points, mesh.points + u[:, :2]
+
+    def note(pair: ContactPair, nodes: Ints, depth: Floats, least: float, where: str) -> None:
+        deepest = int(np.argmax(depth))
+        if depth[deepest] > least:
+            notes.append(
+                f"contact pair {pair.name!r}: nodes that are in no pair {where} "
+                f"({int((depth > least).sum())} of them), "
+                f"node {mesh.node_labels[nodes[deepest]]} by {depth[deepest]:.3g}: "
+                "they passed through. Give the surfaces of the pair all edges that may meet"
+            )
+
+    def entered(before: Floats, after: Floats, first: Floats, last: Floats) -> Floats:
+        """Depth of points behind pieces at the end, of those that were before them [length]."""
+        same = SAME * float(np.ptp(points))
+        start, _, beside = signed_distances(first, before, same)
+        end, _, inside = signed_distances(last, after, same)
+        return np.where(inside & ~(beside & (start < -same)), np.maximum(-end, 0.0), 0.0)
+
+    rims = [nodes[:2] for nodes in mesh.edge_nodes(mesh.boundary_edges())]
+    edges = np.array(rims, np.int64).reshape(-1, 2)
+    surfaces = [s for pair in model.contacts for s in (pair.slave, pair.master)]
+    bodies = [_surface_nodes(model, s) for s in surfaces if not isinstance(s, RigidCurve)]
+    free = np.setdiff1d(edges, np.concatenate(bodies))
+    for pair in model.contacts:
+        if isinstance(pair.master, RigidCurve):
+            continue
+        sides = [np.unique(part[_surface_nodes(model, s)]) for s in (pair.slave, pair.master)]
+        for own, other in (sides, sides[::-1]):
+            nodes = free[np.isin(part[free], np.setdiff1d(own, other))]
+            rim = edges[np.isin(part[edges[:, 0]], np.setdiff1d(other, own))]
+            if len(rim) and len(nodes):
+                depth = entered(points[nodes], x[nodes], points[rim], x[rim])
+                length = np.hypot(*(x[rim[:, 1]] - x[rim[:, 0]]).T)
+                least = NAMED * float(length.mean())
+                note(pair, nodes, depth, least, "lie in the other body")
+    for curve in rigid_curves(model):
+        pairs = [pair for pair in model.contacts if pair.master is curve]
+        slaves = np.concatenate([_surface_nodes(model, pair.slave) for pair in pairs])
+        chosen = np.isin(part, part[slaves]) & (part >= 0)
+        chosen[slaves] = False
+        nodes = np.flatnonzero(chosen)
+        if not len(nodes):
+            continue
+        # Seen from a curve that moved with its reference node.
+        before, after, node = points[nodes], x[nodes], curve.reference
+        if isinstance(node, int | np.integer):
+            after = rotated(after, -curve.turns * u[node, 2], x[node], points[node])
+        pieces = chords(curve)
+        depth = entered(before, after, pieces, pieces)
+        depth[depth > np.linalg.norm(after - before, axis=1)] = 0.0  # it came there around an end
+        # What may lie deeper than the slave surface beside it [mean distance of slave nodes].
+        least = NAMED * float(np.ptp(points[slaves], axis=0).max()) / len(slaves)
+        note(pairs[0], nodes, depth, least, "with this rigid curve lie behind it")
+    return notes
+
+
+def _surface_nodes(model: Model, surface: str | Ints) -> Ints:
+    edges, single = edges_or_nodes(model.mesh, surface)
+    return single if len(single) else model.mesh.edge_set_nodes(edges)

@@ -1,8 +1,14 @@
-"""One contact pair or tie: gaps, states, rows of its constraints."""
+"""One contact pair or tie: gaps, states, rows of its constraints; what passed through it.
+
+The core searches no farther than its reach, and a penetration deeper than the body is no contact. A
+node that moved farther may be behind the opposite surface without contact, and one that moved
+across a body may be outside again on its other side; such an increment is refused.
+"""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -22,12 +28,21 @@ from corota.analysis.terms.contact.gaps import (
     discrete_gradient,
     mean,
 )
-from corota.analysis.terms.contact.setup import make_core
+from corota.analysis.terms.contact.setup import (
+    STRAIGHT,
+    alone,
+    chords,
+    curve_at,
+    make_core,
+    times_of_crossing,
+)
 from corota.arrays import distinct
 from corota.mesh.parts import components
 from corota.model.contact import METHODS, ContactPair, RigidCurve, Tie
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from corota.analysis.numbered_model import NumberedModel
@@ -56,6 +71,9 @@ REDUNDANT = 1e-4
 #: Discretization at the ends of the master: covered fraction of its area below which a node passes
 #: its part to a neighbor, and twice that from which it takes it back for good.
 WEAK = 0.2
+#: Search radius: fraction of the reach, and of the width of a body, that a node may move without
+#: this check; in relaxation, fraction of the shortest slave edge from a position to the next.
+UNSEEN = 0.5
 
 
 class Pair:
@@ -628,6 +646,91 @@ class Pair:
         """Largest shear traction of all constraints under their pressures."""
         return np.asarray(np.minimum(self.friction * p, self.shear_limit))
 
+    # -- passing through ---------------------------------------------------------------
+
+    def passed(
+        self,
+        old: Floats,
+        new: Floats,
+        states: Callable[[], NDArray[np.int8]],
+        terms: Terms,
+        starts: Callable[[], Floats],
+    ) -> Ints:
+        """Constraints whose node crossed the other side from outside to inside and is open.
+
+        `old` and `new` are positions at both ends of the increment, shape (n_nodes, 3), `terms` the
+        gaps at its end, `states` finds the states there, `starts` the outer sides: `outside`.
+        """
+        if self.tied:
+            return np.zeros(0, np.int64)
+        first, last, ends = self.other_side(old, new)
+        if not len(first):
+            return np.zeros(0, np.int64)
+        if self.width_across is None:
+            itself = getattr(self.item, "itself", False)
+            pieces = self.other_side(self.reference, self.reference)[0]
+            self.width_across = math.inf if itself else _width(pieces)
+        least = min(self.reach, self.width_across)
+        nodes, state = self.nodes, None
+        through = np.arange(len(nodes))
+        unseen = ~covered(terms.area, self.full)
+        # Bodies that turn together go along arcs: who passes goes through seen from either of them.
+        sides = (old[nodes, :2], new[nodes, :2]), (first.reshape(-1, 2), last.reshape(-1, 2))
+        turns = [_turn(*side) for side in sides]
+        common = abs(math.remainder(turns[0] - turns[1], math.tau)) <= STRAIGHT < abs(turns[0])
+        for turn in sorted(set(turns)) if common else [0.0]:
+            c, s = math.cos(turn), math.sin(turn)
+            back = np.array([[c, -s], [s, c]])
+            seen, end = np.column_stack([new[:, :2] @ back, new[:, 2]]), last @ back
+            center, spread = np.zeros(2), 0.0
+            if first is not last:
+                drift = (end - first).reshape(-1, 2)
+                center = drift.mean(axis=0)
+                spread = np.hypot(*(drift - center).T).max()
+            moved = np.hypot(*(seen[nodes, :2] - old[nodes, :2] - center).T) + spread
+            far = (moved > UNSEEN * least) | (unseen & (moved > self.depth))
+            through = through[far[through]]
+            if not len(through):
+                break
+            state = states() if state is None else state
+            closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
+            through = through[~closed[through]]
+            start = starts()[through]
+            share = times_of_crossing(
+                first, end, ends, old, seen, nodes[through], start, SMALL * self.edge
+            )
+            through = through[share < math.inf]
+        return through
+
+    def other_side(self, old: Floats, new: Floats) -> tuple[Floats, Floats, Ints]:
+        """Straight pieces of the other side at both ends: (m, 2, 2) twice, and their nodes."""
+        master = getattr(self.item, "master", None)
+        if isinstance(master, RigidCurve):
+            if self.chords is None:
+                self.chords = chords(master)
+            first, last = (curve_at(master, self.chords, self.reference, x) for x in (old, new))
+            return first, last, np.full((len(first), 2), -1, np.int64)
+        other = self.slave if self.master is None else self.master
+        nodes = other.nodes[:, :2]
+        if other.two_sided:
+            nodes = np.concatenate([nodes, nodes[:, ::-1]])
+        return old[nodes][:, :, :2], new[nodes][:, :, :2], nodes
+
+    def outside(self, term: Any, k: int, moves: bool) -> Floats:
+        """Distance from the other side from which each node starts outside, shape (n,).
+
+        The pair is number `k` of the term. A node may touch. In motion (`moves`) an open one may be
+        behind, where a scheme closes gaps after the impact.
+        """
+        committed = None if term.at is None else term.at.states
+        start = np.full(self.n, -SMALL * self.edge)
+        if moves and math.isfinite(self.depth):
+            behind = self.gaps_at(term, k, term.positions(term.u)).gap < 0.0
+            if committed:
+                behind &= committed[k] == OPEN
+            start[behind] = -self.depth
+        return start
+
     # -- increments --------------------------------------------------------------------
 
     def commit(
@@ -695,6 +798,22 @@ class Pair:
             grown = left - float((leaves * at_first).sum())
             self.friction_work += (1.0 - end) * max(left, 0.0) * way
             self.beyond_trapezoid += 0.5 * max(grown, 0.0) * way + (0.5 * comes if turns else 0.0)
+
+
+def _turn(old: Floats, new: Floats) -> float:
+    """Angle by which points turn about their center in the mean [rad]."""
+    before, after = old - old.mean(axis=0), new - new.mean(axis=0)
+    across = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    return math.atan2(float(across.sum()), float((before * after).sum()))
+
+
+def _width(pieces: Floats) -> float:
+    """Least extent of a body that pieces go round; infinite where they end or go round a hole."""
+    points = pieces.reshape(-1, 2)
+    (x, y), size = points.T, np.ptp(points, axis=0)
+    closed = not alone(points, SAME * float(size.max())).any()
+    twice = float((x[::2] * y[1::2] - x[1::2] * y[::2]).sum())
+    return float(size.min()) if closed and twice > SAME * size.max() ** 2 else math.inf
 
 
 __all__ = ["CLOSED", "OPEN", "SLIPPING", "Pair", "Terms"]

@@ -39,7 +39,7 @@ from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.equations import ContactEquations
 from corota.analysis.terms.contact.gaps import PATIENCE, SAME, SMALL, WAITED
 from corota.analysis.terms.contact.motion import ForwardContact
-from corota.analysis.terms.contact.tunneling import UNSEEN
+from corota.analysis.terms.contact.pair import UNSEEN
 from corota.errors import ConvergenceError, SingularError
 
 if TYPE_CHECKING:

@@ -26,10 +26,11 @@ from corota.analysis.terms.contact.gaps import AT_ONCE, SAME, SMALL
 from corota.arrays import distinct
 from corota.errors import ModelError
 from corota.mesh.kinds import EDGES
-from corota.mesh.parts import part_of_cells, part_of_nodes
+from corota.mesh.parts import nodes_of_cells, part_of_cells, part_of_nodes, parts_without
 from corota.model import elements
 from corota.model.constraints import Coupling
 from corota.model.contact import ContactPair, RigidCurve, Tie, edges_or_nodes, joint_thickness
+from corota.results.rigid import rigid_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -638,3 +639,206 @@ def _towards(x: Floats, slave: Surface, master: Surface, out: Floats) -> bool:
     # The corner of the master's box farthest along each normal.
     corner = np.where(out > 0.0, high, low)
     return bool((((corner - at) * out).sum(axis=1) > -0.5 * slave.length.max()).any())
+
+
+# -- sides of surfaces ------------------------------------------------------------------
+
+#: Angle up to which an arc counts as straight, of the way of a side that turns in an increment; and
+#: between a slave edge and the normal of a rigid curve up to which it faces neither side [rad].
+STRAIGHT = 0.1
+
+
+def check_side(system: NumberedModel, item: ContactPair | Tie, slave: Surface, x: Floats) -> None:
+    """Refuse a slave surface whose body starts on the wrong side of a rigid curve.
+
+    The body may have its surface on the curve, or reach through it by less than half. Positions and
+    rotations `x` at the start have the shape (n_nodes, 3).
+
+    Raises
+    ------
+    ModelError
+        Naming the pair, the curve and the nearest node.
+    """
+    curve = item.master
+    if not isinstance(curve, RigidCurve) or not curve.turns:  # no curve, or a gap element
+        return
+    mesh, size = system.model.mesh, SAME * float(slave.length.max())
+    pieces = curve_at(curve, chords(curve), mesh.points, x)
+    if slave.pointwise:
+        # Lines and single nodes have no outer side of their own.
+        nodes, least = slave.node_list, size
+        distance, _, beside = signed_distances(pieces, x[nodes, :2], size)
+    else:
+        nodes, least = slave.nodes[:, 0], 0.0
+        ends = x[slave.nodes[:, :2], :2]
+        distance, best, beside = signed_distances(pieces, ends.mean(axis=1), size)
+        turned = (outward(ends) * outward(pieces)[best]).sum(axis=1)
+        beside &= np.abs(turned) >= STRAIGHT
+    nearest = int(np.argmin(np.where(beside, np.abs(distance), np.inf)))
+    # An edge that faces away is behind, or in front with its back to the curve.
+    away = distance[nearest] <= size if slave.pointwise else turned[nearest] >= STRAIGHT
+    if not beside[nearest] or not away:
+        return
+    part = part_of_nodes(mesh)
+    if slave.pointwise:
+        # Springs end where they will, on either side, and a node with springs alone has no side.
+        springs = np.zeros(mesh.n_cells, bool)
+        for block in system.blocks:
+            springs[block.cells] = block.section.element.startswith("SPRING")
+        if not np.isin(nodes, nodes_of_cells(mesh, np.flatnonzero(~springs))).any():
+            return
+        part = parts_without(mesh, springs)
+    body, _, inside = signed_distances(pieces, x[np.isin(part, part[slave.node_list]), :2], size)
+    # What lies on the curve as a whole tells no side.
+    if not inside.any() or body[inside].max() >= -body[inside].min() - least:
+        return
+    depth = -float(distance[nearest])
+    place = f"{abs(depth):.4g} {'behind' if depth > 0 else 'through'} it"
+    name = f" {curve.name!r}" if curve.name else ""
+    raise _refused(
+        item,
+        "the slave surface starts on the wrong side of "
+        f"the rigid curve{name}: node {mesh.node_labels[nodes[nearest]]} is nearest, "
+        f"{'on it' if abs(depth) <= size else place}. "
+        "The deformable body belongs on the left of the curve's direction of travel; give its "
+        "points in the other order (corota plot draws the rigid body shaded)",
+    )
+
+
+def chords(curve: RigidCurve) -> Floats:
+    """A curve as straight pieces, the rigid body on their left, shape (m, 2, 2)."""
+    lines = rigid_lines(curve)
+    return np.concatenate([np.stack([line[1:], line[:-1]], axis=1) for line in lines])
+
+
+def curve_at(curve: RigidCurve, pieces: Floats, points: Floats, x: Floats) -> Floats:
+    """Straight pieces of a curve where its reference node has moved to; shape (m, 2, 2).
+
+    `points` and `x` are positions in the reference configuration and now, shapes (n_nodes, 2) at
+    least and (n_nodes, 3).
+    """
+    node = curve.reference
+    if not isinstance(node, int | np.integer):
+        return pieces
+    return rotated(pieces, curve.turns * x[node, 2], points[node, :2], x[node, :2])
+
+
+def rotated(x: Floats, turn: float, about: Floats, to: Floats) -> Floats:
+    """Points turned about one point by an angle and moved to another."""
+    c, s = math.cos(turn), math.sin(turn)
+    return np.asarray((x - about) @ np.array([[c, s], [-s, c]]) + to)
+
+
+def alone(points: Floats, same: float) -> Bools:
+    """Which points have no other one of the list in their place."""
+    places = np.round(points / same)
+    _, which, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+    return np.asarray(count[which.ravel()] == 1)
+
+
+def signed_distances(pieces: Floats, points: Floats, same: float) -> tuple[Floats, Ints, Bools]:
+    """Signed distance to the nearest piece, positive to its right, and which piece this is.
+
+    The last part of the result is whether the nearest point lies on the curve, not at a free end.
+    """
+    start, along = pieces[:, 0], pieces[:, 1] - pieces[:, 0]
+    square, normals = (along**2).sum(axis=1), outward(pieces)
+    first, last = np.split(alone(np.concatenate([pieces[:, 0], pieces[:, 1]]), same), 2)
+    distance, best = np.empty(len(points)), np.empty(len(points), np.int64)
+    share = np.empty(len(points))
+    for own in _chunks(len(points), len(pieces)):
+        away = points[own, None] - start
+        t = (away * along).sum(axis=2) / square
+        apart = away - np.clip(t, 0.0, 1.0)[:, :, None] * along
+        size = np.hypot(apart[:, :, 0], apart[:, :, 1])
+        height = (away * normals).sum(axis=2)
+        near = size <= size.min(axis=1, keepdims=True) + same
+        # At a corner the piece with the larger distance decides, as for a wedge.
+        k = np.where(near, np.abs(height), -1.0).argmax(axis=1)
+        rows = np.arange(len(k))
+        best[own], share[own] = k, t[rows, k]
+        distance[own] = np.copysign(size[rows, k], height[rows, k])
+    beyond = ((share < 0.0) & first[best]) | ((share > 1.0) & last[best])
+    return distance, best, ~beyond
+
+
+def times_of_crossing(
+    first: Floats,
+    last: Floats,
+    ends: Ints,
+    old: Floats,
+    new: Floats,
+    nodes: Ints,
+    start: Floats,
+    depth: float = 0.0,
+) -> Floats:
+    """Shares of the way after which nodes go through a piece from outside; inf if they do not.
+
+    All move evenly.
+
+    Parameters
+    ----------
+    first, last, ends : ndarray
+        See :meth:`corota.analysis.terms.contact.pair.Pair.other_side`.
+    old, new : ndarray, shape (n_nodes, 3)
+    nodes : ndarray of int, shape (k,)
+    start : ndarray, shape (k,)
+        Distance at which the outer side begins for each.
+    depth : float
+        Distance from a piece, at the start and at the end, that is none.
+    """
+    out = np.full(len(nodes), math.inf)
+    x, y = old[nodes, :2], new[nodes, :2]
+    for k, piece in _near(first, last, x, y, np.maximum(-start, 0.0)):
+        a, b = _side(first[piece], x[k]), _side(last[piece], y[k])
+        through = (a > start[k]) & (b < -depth) & (ends[piece] != nodes[k, None]).all(axis=1)
+        k, piece, a, b = k[through], piece[through], a[through], b[through]
+        a[a <= depth] = 0.0
+        share = a / (a - b)
+        t = share[:, None]
+        met = first[piece] + t[:, :, None] * (last[piece] - first[piece])
+        hit = _beside(met, x[k] + t * (y[k] - x[k]))
+        # A node that starts on a piece may leave it around a corner.
+        hit &= (share > 0.0) | _beside(last[piece], y[k])
+        np.minimum.at(out, k[hit], share[hit])
+    return out
+
+
+def _near(
+    first: Floats, last: Floats, x: Floats, y: Floats, margin: Floats
+) -> Iterator[tuple[Ints, Ints]]:
+    """Nodes and pieces whose ways may meet, by boxes that move with the mean of the pieces."""
+    if not len(x):
+        return
+    mean = (last - first).mean(axis=(0, 1))
+    last, y = last - mean, y - mean
+    low = np.minimum(first.min(axis=1), last.min(axis=1))
+    high = np.maximum(first.max(axis=1), last.max(axis=1))
+    below, above = np.minimum(x, y) - margin[:, None], np.maximum(x, y) + margin[:, None]
+    axis = int(np.argmax(np.ptp(low, axis=0)))
+    order = np.argsort(low[:, axis])
+    sorted_low, widest = low[order, axis], (high - low)[:, axis].max()
+    begin = np.searchsorted(sorted_low, below[:, axis] - widest)
+    count = np.searchsorted(sorted_low, above[:, axis], side="right") - begin
+    part = np.cumsum(count) // AT_ONCE
+    for number in range(int(part[-1]) + 1):
+        own = np.flatnonzero(part == number)
+        k = np.repeat(own, count[own])
+        before = np.cumsum(count[own]) - count[own]
+        piece = order[np.arange(len(k)) + np.repeat(begin[own] - before, count[own])]
+        meet = (low[piece] <= above[k]).all(axis=1) & (high[piece] >= below[k]).all(axis=1)
+        yield k[meet], piece[meet]
+
+
+def _side(pieces: Floats, x: Floats) -> Floats:
+    """Distances of points from lines, positive outside: on the right."""
+    d, r = pieces[..., 1, :] - pieces[..., 0, :], x - pieces[..., 0, :]
+    length = np.hypot(d[..., 0], d[..., 1])
+    return np.asarray((d[..., 1] * r[..., 0] - d[..., 0] * r[..., 1]) / length)
+
+
+def _beside(pieces: Floats, x: Floats) -> Bools:
+    """Whether the feet of points on the lines through pieces lie on these."""
+    d = pieces[:, 1] - pieces[:, 0]
+    along = ((x - pieces[:, 0]) * d).sum(axis=1) / (d * d).sum(axis=1)
+    return np.asarray((along >= 0.0) & (along <= 1.0))
