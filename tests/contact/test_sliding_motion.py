@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.verification.impact_models import budget, run_ring, strike
+from benchmarks.studies.impact_table import budget
+from corota.verification.impact_models import run_ring, strike
 
 METHODS = ["mortar", "node_to_segment"]
 SCHEMES = [

@@ -11,7 +11,8 @@ from __future__ import annotations
 import pytest
 
 import corota as ct
-from corota.verification.plastic_models import find, notched_strip
+from benchmarks.studies.updated_frame import notched_strip
+from corota.verification.plastic_models import find
 
 #: Elongation, and the force on the quarter.
 CALCULIX = {0.02: 1913.772, 0.05: 1701.821, 0.1: 1257.452, -0.05: -2299.694, -0.1: -2497.523}

@@ -92,37 +92,6 @@ def perforated_strip(
     return model
 
 
-def notched_strip(
-    element: str,
-    n: int,
-    elongation: float,
-    local_strain: Any = "logarithmic",
-    material: Material | None = None,
-    mean_dilatation: bool = False,
-) -> ct.Model:
-    """Quarter strip 10 x 18 in plane strain with a round notch of radius 5 on either side.
-
-    Steel that hardens by less than its stress (E 200000, nu 0.3, yield stress 250, slope 150);
-    `elongation` is the displacement of the top over the height.
-    """
-    model = ct.Model(strip_mesh(n, CELL[element]))
-    material = material or ct.Mises(E=200e3, nu=0.3, yield_stress=250.0, isotropic=150.0)
-    model.section(
-        "all",
-        element=element,
-        material=material,
-        plane="strain",
-        local_strain=local_strain,
-        mean_dilatation=mean_dilatation,
-    )
-    turn = 0.0 if element in DRILLING else None
-    bottom, right, top = (find(model.mesh, a, v) for a, v in ((1, 0.0), (0, 10.0), (1, 18.0)))
-    model.fix(bottom, x=None, y=0.0, rotation=turn)
-    model.fix(right, x=0.0, y=None, rotation=turn)
-    model.fix(top, x=None, y=18.0 * elongation, rotation=turn)
-    return model
-
-
 def cook(
     element: str,
     n: int,
