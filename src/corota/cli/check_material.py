@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: Exit code where a law has a fault.
 FAULTY = 3
+#: Errors of a law, and how the row calls them.
+ERRORS = {n: n for n in ("tangent", "asymmetry", "objectivity", "energy")} | {"created": "gained"}
 
 
 def run(args: Any, terminal: Terminal) -> int:
@@ -33,19 +35,8 @@ def run(args: Any, terminal: Terminal) -> int:
             terminal.line(_row(checked))
             for fault in checked.faults:
                 terminal.error(f"{name}, plane {plane}: {fault}")
-            terminal.record(
-                {
-                    "event": "material",
-                    "name": name,
-                    "plane": plane,
-                    "tangent": checked.tangent,
-                    "asymmetry": checked.asymmetry,
-                    "objectivity": checked.objectivity,
-                    "energy": checked.energy,
-                    "created": checked.created,
-                    "faults": checked.faults,
-                }
-            )
+            facts = ("name", "plane", *ERRORS, "faults")
+            terminal.record({"event": "material"} | {n: getattr(checked, n) for n in facts})
     if args.plot:
         from corota.plots.laws import law_curves
 
@@ -77,11 +68,6 @@ def _materials(args: Any) -> dict[str, Material]:
 
 
 def _row(checked: LawCheck) -> str:
-    def shown(value: float | None) -> str:
-        return "-" if value is None else f"{value:.1e}"
-
-    return (
-        f"{checked.name}, plane {checked.plane}: tangent {shown(checked.tangent)}  "
-        f"asymmetry {shown(checked.asymmetry)}  objectivity {shown(checked.objectivity)}  "
-        f"energy {shown(checked.energy)}  gained {shown(checked.created)}"
-    )
+    found = {words: getattr(checked, name) for name, words in ERRORS.items()}
+    shown = (f"{words} {'-' if e is None else f'{e:.1e}'}" for words, e in found.items())
+    return f"{checked.name}, plane {checked.plane}: {'  '.join(shown)}"

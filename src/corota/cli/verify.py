@@ -76,16 +76,8 @@ def _list(wanted: list[Problem], terminal: Terminal) -> int:
             terminal.line(group)
         for problem in members:
             terminal.line(f"  {problem.name:{width}}  {problem.title}")
-            terminal.record(
-                {
-                    "event": "problem",
-                    "name": problem.name,
-                    "title": problem.title,
-                    "group": group,
-                    "source": problem.source,
-                    "certainty": problem.certainty,
-                }
-            )
+            facts = ("name", "title", "group", "source", "certainty")
+            terminal.record({"event": "problem"} | {n: getattr(problem, n) for n in facts})
     return 0
 
 
@@ -143,17 +135,8 @@ def _records(outcome: Outcome) -> list[dict[str, Any]]:
     head = {"event": "value", "problem": outcome.name}
     if outcome.error:
         return [head | {"event": "failure", "message": outcome.error}]
+    facts = ("quantity", "reference", "measured", "error", "tolerance", "kind", "ok")
     return [
-        head
-        | {
-            "quantity": v.quantity,
-            "reference": v.reference,
-            "measured": v.measured,
-            "error": v.error,
-            "tolerance": v.tolerance,
-            "kind": v.kind,
-            "ok": v.ok,
-            "seconds": outcome.seconds,
-        }
+        head | {n: getattr(v, n) for n in facts} | {"seconds": outcome.seconds}
         for v in outcome.values
     ]

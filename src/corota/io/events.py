@@ -20,14 +20,17 @@ if TYPE_CHECKING:
 
 def json_line(record: dict[str, Any]) -> str:
     """One line of JSON; a number that is not finite becomes ``null``."""
-    return json.dumps(_plain(record), allow_nan=False, separators=(",", ":")) + "\n"
+    return json.dumps(plain(record), allow_nan=False, separators=(",", ":")) + "\n"
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Data for JSON: numbers and arrays of NumPy as Python's, NaN and infinity as None."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
     if isinstance(value, dict):
-        return {str(k): _plain(v) for k, v in value.items()}
+        return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
+        return [plain(v) for v in value]
     if isinstance(value, bool | int | str) or value is None:
         return value
     try:

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.io.events import plain
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -66,25 +68,6 @@ def unpack(data: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         arrays[item["name"]] = np.ascontiguousarray(planes.T).view(kind).reshape(item["shape"])
         at += size
     return header, arrays
-
-
-def plain(value: Any) -> Any:
-    """Data for JSON: numpy numbers as Python's, NaN and infinity as None."""
-    if isinstance(value, dict):
-        return {str(k): plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(v) for v in value]
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, bool | str) or value is None:
-        return value
-    if isinstance(value, int | np.integer):
-        return int(value)
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        return str(value)
-    return number if math.isfinite(number) else None
 
 
 def rounded(values: NDArray[Any], bits: int = 14) -> NDArray[np.float32]:

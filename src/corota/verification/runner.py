@@ -32,7 +32,11 @@ def measure(name: str, full: bool = False, pages: str = "") -> Outcome:
         with warnings.catch_warnings():
             # Large strain, for instance, is intended.
             warnings.simplefilter("ignore")
-            outcome.values = [_plain(value) for value in problem.measure()]
+            # Python's own numbers pickle and print alike everywhere.
+            outcome.values = [
+                Value(v.quantity, float(v.reference), float(v.measured), float(v.tolerance), v.kind)
+                for v in problem.measure()
+            ]
             outcome.seconds = time.perf_counter() - start
             if full and problem.study is not None:
                 outcome.study = problem.study()
@@ -44,17 +48,6 @@ def measure(name: str, full: bool = False, pages: str = "") -> Outcome:
         outcome.error = f"{type(error).__name__}: {error}"
         outcome.seconds = outcome.seconds or time.perf_counter() - start
     return outcome
-
-
-def _plain(value: Value) -> Value:
-    """Value with Python's own numbers, which pickle and print alike everywhere."""
-    return Value(
-        value.quantity,
-        float(value.reference),
-        float(value.measured),
-        float(value.tolerance),
-        value.kind,
-    )
 
 
 def run(
