@@ -61,7 +61,14 @@ class InputError(CorotaError, ValueError):
         self.where = where
 
 
-def number(value: object, what: str, where: Location | None = None) -> float:
+def number(
+    value: object,
+    what: str,
+    where: Location | None = None,
+    *,
+    above: float = -math.inf,
+    least: float = -math.inf,
+) -> float:
     """A finite number.
 
     Parameters
@@ -70,11 +77,13 @@ def number(value: object, what: str, where: Location | None = None) -> float:
         The given value.
     what : str
         Its name, at the start of the message.
+    above, least : float
+        What it must exceed, and what it must reach.
 
     Raises
     ------
     InputError
-        If it is not a number, or not finite.
+        If it is not a number, not finite, or too small.
     """
     try:
         found = float(value)  # type: ignore[arg-type]
@@ -82,6 +91,9 @@ def number(value: object, what: str, where: Location | None = None) -> float:
         raise InputError(f"{what} must be a number, not {value!r}", where) from None
     if not math.isfinite(found) or isinstance(value, str):
         raise InputError(f"{what} must be a finite number, not {value!r}", where)
+    if found <= above or found < least:
+        bound = f"> {above:g}" if found <= above else f">= {least:g}"
+        raise InputError(f"{what} must be {bound}, not {value}", where)
     return found
 
 

@@ -294,8 +294,7 @@ def of_fibers(fibers: ArrayLike, *, shear_area: float = 0.0) -> Profile:
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
     y, area = rows.T
     y = y - (y @ area) / area.sum()
-    if not 0.0 <= number(shear_area, "the shear area") < np.inf:
-        raise InputError(f"the shear area must be >= 0, not {shear_area}")
+    number(shear_area, "the shear area", least=0.0)
     table = np.stack([y, area, np.zeros_like(y)], axis=1)
     return Profile(
         float(area.sum()), float(area @ y**2), float(shear_area), float(np.ptp(y)), table
@@ -304,13 +303,7 @@ def of_fibers(fibers: ArrayLike, *, shear_area: float = 0.0) -> Profile:
 
 def _sizes(**sizes: float) -> list[float]:
     """Sizes as numbers, refused unless positive."""
-    found = []
-    for name, value in sizes.items():
-        size = number(value, f"the {name}")
-        if not (math.isfinite(size) and size > 0.0):
-            raise InputError(f"the {name} must be > 0, not {value!r}")
-        found.append(size)
-    return found
+    return [number(value, f"the {name}", above=0.0) for name, value in sizes.items()]
 
 
 def _wall(width: float, bottom: float, top: float) -> Moments:

@@ -51,7 +51,7 @@ CASES = [
     ("2, 2, 3, 6, 5", "1, 2, 3, 6, 5", 10, 0, "element 1 is already defined"),
     ("4, 0., 1.\n5, 1., 1.\n", "4, 0., 0.\n5, 1., 0.\n", 9, 0, "no length"),
     # Materials and sections.
-    ("210000., .3", "-1., .3", 13, 0, "positive"),
+    ("210000., .3", "-1., .3", 13, 0, "must be > 0"),
     ("210000., .3", "210000., .5", 13, 0, "Poisson's ratio 0.5"),
     ("210000., .3", "", 12, 1, "a data line is missing"),
     ("*ELASTIC\n210000., .3\n", "", 11, 1, "has no *ELASTIC"),

@@ -40,7 +40,7 @@ CASES = [
     (2, 4, "too large", "3, 2., 0.", "3, 1e400, 0."),
     (2, 4, "normal number", "3, 2., 0.", "3, 1e-310, 0."),
     (2, 23, "nan", "3, 2, -5.", "3, 2, nan"),
-    (2, 13, "positive", "210000., .3", "0., .3"),
+    (2, 13, "must be > 0", "210000., .3", "0., .3"),
     (2, 13, "Poisson", "210000., .3", "210000., .5"),
     (2, 15, "thickness", "MATERIAL=steel\n2.", "MATERIAL=steel\n0."),
     (3, 13, "density", "*STATIC\n.1, 1.\n", "*DYNAMIC\n.1, 1.\n"),

@@ -87,7 +87,7 @@ BAD = [
     (
         "*PLASTIC, HARDENING=COMBINED, DATA TYPE=PARAMETERS\n250., 0., 1.\n",
         0,
-        "C of back-stress 1 must be a positive number",
+        "C of back-stress 1 must be > 0",
     ),
     (
         "*PLASTIC, HARDENING=COMBINED, DATA TYPE=PARAMETERS, NUMBER BACKSTRESSES=2\n250., 1., 1.\n",

@@ -181,8 +181,8 @@ def test_yield_in_simple_states() -> None:
 
 
 BAD = [
-    ({"yield_stress": 0.0}, "yield stress must be a positive number"),
-    ({"yield_stress": -1.0}, "yield stress must be a positive number"),
+    ({"yield_stress": 0.0}, "yield stress must be > 0"),
+    ({"yield_stress": -1.0}, "yield stress must be > 0"),
     ({}, "either yield_curve or yield_stress"),
     ({"yield_stress": 1.0, "yield_curve": [(1.0, 0.0)]}, "either yield_curve or yield_stress"),
     ({"yield_curve": []}, "no points"),

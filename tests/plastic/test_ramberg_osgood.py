@@ -80,9 +80,9 @@ def test_uniaxial_curve(exponent: float) -> None:
     ("wrong", "message"),
     [
         ({"exponent": 0.5}, "the exponent must be >= 1"),
-        ({"exponent": float("nan")}, "the exponent must be >= 1"),
-        ({"offset": 0.0}, "the offset must be a positive number"),
-        ({"yield_stress": -1.0}, "the yield stress must be a positive number"),
+        ({"exponent": float("nan")}, "the exponent must be a finite number"),
+        ({"offset": 0.0}, "the offset must be > 0"),
+        ({"yield_stress": -1.0}, "the yield stress must be > 0"),
         ({"nu": 0.5}, "Poisson's ratio"),
     ],
 )
@@ -255,7 +255,7 @@ def test_deck_is_written_and_read(tmp_path: Path) -> None:
     [
         ("1000., 0.3, 0.002, 5.", "the offset is missing"),
         ("1000., 0.3, 0.002, 0.5, 0.6", "the exponent must be >= 1"),
-        ("1000., 0.3, 0., 5., 0.6", "the yield stress must be a positive number"),
+        ("1000., 0.3, 0., 5., 0.6", "the yield stress must be > 0"),
         ("1000., 0.3, 2., 5., 0.6, 20.\n900., 0.3, 2., 5., 0.6, 20.", "20 is given twice"),
         ("1000., 0.3, 2., 5., 0.6\n*ELASTIC\n1000., 0.3", "already has constants"),
         ("1000., 0.3, 2., 5., 0.6\n*PLASTIC\n2., 0.", "needs isotropic constants in *ELASTIC"),

@@ -113,9 +113,8 @@ class PeriodicCell:
         if not self.area > SAME * float(np.abs(self.vectors).max()) ** 2:
             raise InputError("the vectors of the lattice span no area")
         self.size = math.sqrt(self.area)
-        self.depth = _depth(self.base) if depth is None else number(depth, "the depth")
-        if not self.depth > 0.0:
-            raise InputError(f"the depth must be > 0, not {self.depth}")
+        own = _depth(self.base) if depth is None else depth
+        self.depth = number(own, "the depth", above=0.0)
         classes = pair_nodes(self.base.mesh, self.vectors, contact_nodes(self.base))
         self.around, self.first, self.shift, repeated = add_images(
             self.base, self.vectors, *classes

@@ -84,8 +84,7 @@ class Density:
     areas: Any = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        if not number(self.radius, "the radius of the filter") > 0.0:
-            raise InputError(f"the radius of the filter must be > 0, not {self.radius}")
+        number(self.radius, "the radius of the filter", above=0.0)
         if not (0.0 < self.least < 1.0 and self.power >= 1.0 and self.sharpness >= 0.0):
             raise InputError("expected 0 < least < 1, power >= 1 and sharpness >= 0")
         self.areas = _areas(self.mesh)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from corota.arrays import Bools, Floats, Ints, distinct
-from corota.errors import InputError
+from corota.errors import InputError, number
 from corota.mesh.data import Cells, Mesh
 from corota.mesh.kinds import EDGES
 from corota.renamed import accept_old_names
@@ -50,8 +50,7 @@ def move(
     >>> from corota import mesh
     >>> turned = mesh.move(mesh.rectangle(2.0, 1.0, nx=2, ny=1), angle=37.0)
     """
-    if not (scale > 0.0 and math.isfinite(scale)):
-        raise InputError(f"the scale must be > 0, not {scale}")
+    number(scale, "the scale", above=0.0)
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     points = scale * mesh.points @ np.array([[c, s], [-s, c]]) + np.asarray(shift)
     return _copy(mesh, points)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.errors import InputError, number
+from corota.errors import number
 
 if TYPE_CHECKING:
     from corota.arrays import Floats
@@ -52,8 +52,7 @@ def random_field(mesh: Mesh, length: float, *, seed: int = 0) -> Floats:
     >>> field.shape
     (202, 2)
     """
-    if not number(length, "the correlation length") > 0.0:
-        raise InputError(f"the correlation length must be > 0, not {length}")
+    number(length, "the correlation length", above=0.0)
     rng = np.random.default_rng(seed)
     waves = rng.standard_normal((WAVES, 2, 2)) / length
     phases = rng.uniform(0.0, 2.0 * math.pi, (WAVES, 2))

@@ -11,7 +11,7 @@ import numpy as np
 
 import corota._core as _core
 from corota.display import Brief
-from corota.errors import InputError, Location
+from corota.errors import InputError, Location, number
 from corota.model.friction import MOST_FRICTION, Friction, coefficients, described, largest
 from corota.renamed import accept_old_names
 
@@ -112,8 +112,7 @@ class RigidCurve(Brief):
 
         Clockwise (sweep < 0) the rigid body is the disc, counter-clockwise it lies outside.
         """
-        if not (radius > 0.0 and math.isfinite(radius)):
-            raise InputError(f"the radius of an arc must be > 0, not {radius}")
+        number(radius, "the radius of an arc", above=0.0)
         if sweep == 0.0:
             raise InputError("the sweep of an arc must not be 0")
         a, turn = math.radians(start), math.radians(sweep)
@@ -547,8 +546,7 @@ class Tie(Brief):
     where: Location | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
-            raise InputError("the tolerance of a tie must be >= 0", self.where)
+        number(self.tolerance, "the tolerance of a tie", self.where, least=0.0)
         if np.array_equal(self.slave, self.master):
             raise InputError("a surface cannot be tied to itself", self.where)
         if not self.name:

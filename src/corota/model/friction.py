@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -54,9 +53,7 @@ class DecayingFriction(Brief):
                     f"not {value:g}"
                 )
             setattr(self, what, value)
-        self.decay = number(self.decay, "the decay of friction")
-        if not 0.0 < self.decay < math.inf:
-            raise InputError(f"the decay of friction must be > 0, not {self.decay:g}")
+        self.decay = number(self.decay, "the decay of friction", above=0.0)
 
     @property
     def largest(self) -> float:

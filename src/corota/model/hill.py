@@ -7,8 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from corota.errors import InputError
-from corota.model.materials import _positive
+from corota.errors import InputError, number
 from corota.model.plasticity import Mises
 
 
@@ -61,7 +60,7 @@ class Hill(Mises):
             raise InputError("Hill plasticity has no rate: leave it out", self.where)
         self.law = "hill"
         for name in ("R11", "R22", "R33", "R12"):
-            _positive(getattr(self, name), name, self.where)
+            number(getattr(self, name), name, self.where, above=0.0)
         f, g, h = self._normal
         if not f * g + g * h + h * f > 0.0:
             raise InputError(
@@ -82,7 +81,7 @@ class Hill(Mises):
         stress is the one along the rolling direction.
         """
         for name, value in (("r0", r0), ("r45", r45), ("r90", r90)):
-            _positive(value, name, None)
+            number(value, name, above=0.0)
         f, g, h = r0 / (r90 * (1.0 + r0)), 1.0 / (1.0 + r0), r0 / (1.0 + r0)
         n = (r0 + r90) * (1.0 + 2.0 * r45) / (2.0 * r90 * (1.0 + r0))
         return cls(

@@ -3,12 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
-from corota.errors import InputError
+from corota.errors import InputError, number
 from corota.model.material_table import MaterialTable
-from corota.model.materials import _positive
 from corota.model.single_point import LawOfTheCore
 
 
@@ -87,12 +85,11 @@ class JohnsonCook(LawOfTheCore):
     def __post_init__(self) -> None:
         self._check_isotropic(self.E, self.nu)
         self._check_motion()
-        _positive(self.A, "the yield stress A", self.where)
+        number(self.A, "the yield stress A", self.where, above=0.0)
         for name, value in (("n", self.n), ("the rate", self.rate), ("m", self.m)):
-            _positive(value, name, self.where)
+            number(value, name, self.where, above=0.0)
         for name, value in (("B", self.B), ("C", self.C)):
-            if not (math.isfinite(value) and value >= 0.0):
-                raise InputError(f"{name} must be >= 0, not {value}", self.where)
+            number(value, name, self.where, least=0.0)
         if self.melting is not None and not self.melting > self.transition:
             raise InputError(
                 f"the melting temperature {self.melting:g} must lie above the transition "
@@ -105,8 +102,8 @@ class JohnsonCook(LawOfTheCore):
                 self.where,
             )
         if self.heat_fraction:
-            _positive(self.specific_heat, "the specific heat", self.where)
-            _positive(self.rho, "the density of a material that heats", self.where)
+            number(self.specific_heat, "the specific heat", self.where, above=0.0)
+            number(self.rho, "the density of a material that heats", self.where, above=0.0)
             if self.melting is None:
                 raise InputError(
                     "heat has no effect without the melting temperature: give it, or leave "

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.errors import InputError
+from corota.errors import InputError, number
 from corota.mesh.parts import cells_of
 
 if TYPE_CHECKING:
@@ -157,10 +157,8 @@ class LineSections:
 
         from corota.model.sections import Section
 
-        if not (np.isfinite(profile[0]) and profile[0] > 0.0):
-            raise InputError(f"the area must be > 0, not {profile[0]}")
-        if not (np.isfinite(height) and height >= 0.0):
-            raise InputError(f"the height of a section must be >= 0, not {height}")
+        number(profile[0], "the area", above=0.0)
+        number(height, "the height of a section", least=0.0)
         where, law = self._cells(cells), deepcopy(material)
         found = Section(
             where,

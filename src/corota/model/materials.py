@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 
 from corota.display import Brief
-from corota.errors import InputError, Location
+from corota.errors import InputError, Location, number
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -28,15 +28,6 @@ def isotropic_compliance(E: ArrayLike, nu: ArrayLike) -> Floats:
         s[..., i, i] = 1.0 / young
     s[..., 3, 3] = 2.0 * (1.0 + poisson) / young
     return s
-
-
-def _positive(value: float, name: str, where: Location | None) -> None:
-    try:
-        good = math.isfinite(value) and value > 0.0
-    except TypeError:
-        good = False
-    if not good:
-        raise InputError(f"{name} must be a positive number, not {value!r}", where)
 
 
 @dataclass(frozen=True, repr=False)
@@ -202,7 +193,7 @@ class Material(Brief):
         raise TypeError(f"{type(self).__name__} has no parameters")
 
     def _check_isotropic(self, E: float, nu: float) -> None:
-        _positive(E, "Young's modulus E", self.where)
+        number(E, "Young's modulus E", self.where, above=0.0)
         if not -1.0 < nu < 0.5:
             raise InputError(
                 f"Poisson's ratio {nu} is outside -1 < nu < 0.5; "
@@ -211,8 +202,7 @@ class Material(Brief):
             )
 
     def _check_motion(self) -> None:
-        if not (math.isfinite(self.rho) and self.rho >= 0.0):
-            raise InputError(f"the density must be >= 0, not {self.rho}", self.where)
+        number(self.rho, "the density", self.where, least=0.0)
         if not (len(self.rayleigh) == 2 and all(0.0 <= c < math.inf for c in self.rayleigh)):
             raise InputError(
                 f"rayleigh damping is a pair of numbers >= 0, not {self.rayleigh}", self.where
@@ -291,7 +281,7 @@ class Orthotropic(Material):
 
     def __post_init__(self) -> None:
         for name in ("E1", "E2", "E3", "G12"):
-            _positive(getattr(self, name), name, self.where)
+            number(getattr(self, name), name, self.where, above=0.0)
         s12, s13, s23 = -self.nu12 / self.E1, -self.nu13 / self.E1, -self.nu23 / self.E2
         s11, s22, s33 = 1.0 / self.E1, 1.0 / self.E2, 1.0 / self.E3
         minor = s11 * s22 - s12 * s12

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from corota.display import Brief
-from corota.errors import InputError
+from corota.errors import InputError, number
 from corota.model.dofs import dof_index
 from corota.model.settings import Settings
 
@@ -82,8 +82,8 @@ class ArcLength(Brief, Settings):
             raise InputError(f"branches are counted from 1, not {self.branch!r}")
         if self.increments is not None and self.increments < 1:
             raise InputError(f"a path needs at least one increment, not {self.increments}")
-        if self.factor is not None and not math.isfinite(self.factor):
-            raise InputError(f"the load factor at the end must be finite, not {self.factor}")
+        if self.factor is not None:
+            number(self.factor, "the load factor at the end")
         if self.displacement is not None:
             if len(self.displacement) != 3 or not math.isfinite(self.displacement[2]):
                 raise InputError(
@@ -131,14 +131,12 @@ class DisplacementControl(Brief):
     locate: bool = True
 
     def __post_init__(self) -> None:
-        if not math.isfinite(self.target):
-            raise InputError(f"the target displacement must be finite, not {self.target}")
+        number(self.target, "the target displacement")
         if self.increments < 1:
             raise InputError(f"a path needs at least one increment, not {self.increments}")
         for _, dof, weight in self.terms:
             dof_index(dof)
-            if not math.isfinite(weight):
-                raise InputError(f"the weight of a term must be finite, not {weight}")
+            number(weight, "the weight of a term")
 
     @property
     def terms(self) -> list[tuple[Where, str | int, float]]:

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from corota.display import Brief
-from corota.errors import InputError, Location
-from corota.model.materials import _positive
+from corota.errors import InputError, Location, number
 from corota.model.rates import Norton, Rate, RateCurves
 from corota.model.single_point import LawOfTheCore
 
@@ -129,7 +128,7 @@ class Mises(LawOfTheCore):
                 ) from None
             self._check_curve(curve)
         elif self.yield_stress is not None:
-            _positive(self.yield_stress, "the yield stress", self.where)
+            number(self.yield_stress, "the yield stress", self.where, above=0.0)
         elif self.isotropic != 0.0 or self.back_stresses:
             raise InputError(
                 "hardening without a yield stress: give yield_stress or yield_curve", self.where
@@ -138,11 +137,11 @@ class Mises(LawOfTheCore):
             self._check_rate_curves(self.rate)
         law = self.isotropic if isinstance(self.isotropic, Voce) else Voce(0.0, 0.0, self.isotropic)
         for name, value in (("Q", law.Q), ("b", law.b), ("the isotropic slope", law.H)):
-            self._not_negative(name, value)
-        self._not_negative("the kinematic modulus", self.kinematic)
-        for number, (c, gamma) in enumerate(self.chaboche, start=1):
-            _positive(c, f"C of back-stress {number}", self.where)
-            self._not_negative(f"gamma of back-stress {number}", gamma)
+            number(value, name, self.where, least=0.0)
+        number(self.kinematic, "the kinematic modulus", self.where, least=0.0)
+        for place, (c, gamma) in enumerate(self.chaboche, start=1):
+            number(c, f"C of back-stress {place}", self.where, above=0.0)
+            number(gamma, f"gamma of back-stress {place}", self.where, least=0.0)
         if len(self.back_stresses) > MAX_BACK_STRESSES:
             raise InputError(
                 f"at most {MAX_BACK_STRESSES} back-stresses are supported, not "
@@ -159,10 +158,6 @@ class Mises(LawOfTheCore):
             rate.joined(self.yield_curve)
         except InputError as error:
             raise InputError(error.message, self.where) from None
-
-    def _not_negative(self, name: str, value: float) -> None:
-        if not (math.isfinite(value) and value >= 0.0):
-            raise InputError(f"{name} must be >= 0, not {value}", self.where)
 
     def _check_curve(self, curve: list[tuple[float, float]]) -> None:
         if not curve:

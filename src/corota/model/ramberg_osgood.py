@@ -3,14 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.errors import InputError
-from corota.model.materials import _positive
+from corota.errors import number
 from corota.model.single_point import LawOfTheCore
 
 if TYPE_CHECKING:
@@ -76,10 +74,9 @@ class RambergOsgood(LawOfTheCore):
     def __post_init__(self) -> None:
         self._check_isotropic(self.E, self.nu)
         self._check_motion()
-        _positive(self.yield_stress, "the yield stress", self.where)
-        _positive(self.offset, "the offset", self.where)
-        if not (math.isfinite(self.exponent) and self.exponent >= 1.0):
-            raise InputError(f"the exponent must be >= 1, not {self.exponent}", self.where)
+        number(self.yield_stress, "the yield stress", self.where, above=0.0)
+        number(self.offset, "the offset", self.where, above=0.0)
+        number(self.exponent, "the exponent", self.where, least=1.0)
 
     @property
     def first_yield(self) -> float:

@@ -23,13 +23,6 @@ if TYPE_CHECKING:
 HARDENINGS = ("time", "strain")
 
 
-def _above(value: float, name: str, least: float = 0.0) -> float:
-    found = number(value, name)
-    if not (np.isfinite(found) and found > least):
-        raise InputError(f"{name} must be > {least:g}, not {value!r}")
-    return found
-
-
 @dataclass(repr=False)
 class CowperSymonds(Brief):
     """Yield stress times ``1 + (p' / D)^(1 / n)`` with the rate p' of the plastic strain.
@@ -60,8 +53,8 @@ class CowperSymonds(Brief):
     n: float
 
     def __post_init__(self) -> None:
-        _above(self.D, "the rate D")
-        _above(self.n, "the exponent n")
+        number(self.D, "the rate D", above=0.0)
+        number(self.n, "the exponent n", above=0.0)
 
     def numbers(self) -> list[float]:
         """Numbers for the core."""
@@ -198,9 +191,9 @@ class Norton(Brief):
     hardening: Literal["time", "strain"] = "time"
 
     def __post_init__(self) -> None:
-        _above(self.A, "the factor A of creep")
-        _above(self.n, "the exponent n of creep")
-        _above(self.m, "the exponent m of the time", -1.0)
+        number(self.A, "the factor A of creep", above=0.0)
+        number(self.n, "the exponent n of creep", above=0.0)
+        number(self.m, "the exponent m of the time", above=-1.0)
         choose_attribute(self, "hardening", HARDENINGS, "hardening of creep")
 
     def numbers(self) -> list[float]:

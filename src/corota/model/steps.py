@@ -185,9 +185,7 @@ class Step(Brief, Loading, Settings):
         self._kinds()
         check_supports(self.supports, self.where)
         check_loads(self.loads, self.where)
-        self.period = number(self.period, "the period of a step", self.where)
-        if not (math.isfinite(self.period) and self.period > 0.0):
-            raise InputError(f"the period of a step must be > 0, not {self.period}", self.where)
+        self.period = number(self.period, "the period of a step", self.where, above=0.0)
         for name in ("first_increment", "smallest_increment", "largest_increment"):
             value = getattr(self, name)
             if not value >= 0.0:
@@ -410,10 +408,7 @@ class Static(Step):
     lasting: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.plastic_increment) and self.plastic_increment >= 0.0):
-            raise InputError(
-                f"plastic_increment must be >= 0, not {self.plastic_increment}", self.where
-            )
+        number(self.plastic_increment, "plastic_increment", self.where, least=0.0)
         if self.at_limit not in ("stop", "follow"):
             raise InputError(
                 f"at_limit must be 'stop' or 'follow', not {self.at_limit!r}", self.where
@@ -470,11 +465,8 @@ class Visco(Static):
     def __post_init__(self) -> None:
         if self.path is not None:
             raise InputError("a step of creep follows its time, not a path", self.where)
-        tolerance = self.creep_tolerance
-        if tolerance is not None and not (math.isfinite(tolerance) and tolerance >= 0.0):
-            raise InputError(
-                f"creep_tolerance must be >= 0, not {self.creep_tolerance}", self.where
-            )
+        if self.creep_tolerance is not None:
+            number(self.creep_tolerance, "creep_tolerance", self.where, least=0.0)
         super().__post_init__()
 
 
@@ -713,8 +705,7 @@ class SteadyState(Step):
                 f"{self.points:,}",
                 self.where,
             )
-        if not (math.isfinite(self.bias) and self.bias > 0.0):
-            raise InputError(f"bias is a positive number, not {self.bias:g}", self.where)
+        number(self.bias, "bias", self.where, above=0.0)
         check_damping(self.damping, self.rayleigh, self.where)
         if self.direct and (self.residual or _any_share(self.damping)):
             raise InputError(

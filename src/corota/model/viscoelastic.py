@@ -56,8 +56,7 @@ class WLF(Brief):
 
     def __post_init__(self) -> None:
         for name, value in (("C1", self.C1), ("C2", self.C2)):
-            if not (np.isfinite(number(value, name)) and value > 0.0):
-                raise InputError(f"{name} must be > 0, not {value!r}")
+            number(value, name, above=0.0)
         number(self.T0, "T0")
 
 
