@@ -155,9 +155,7 @@ def test_short_shoe_brake_helps_or_hinders_itself(sense: float, mu: float) -> No
     assert results.frames[-1].C[3, 0] == pytest.approx(normal, rel=1e-5)  # a node has the area 1
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("mu", [0.0, 0.3])
-@pytest.mark.parametrize("turn", [30.0, 90.0, 150.0])
+@pytest.mark.parametrize(("method", "mu", "turn"), cover(METHODS, [0.0, 0.3], [30.0, 90.0, 150.0]))
 def test_flat_follower_on_an_eccentric_cam(method: str, mu: float, turn: float) -> None:
     """A disc of radius R turns about a point e below its center: a flat follower rises by e
     cos(turn), the contact lies e sin(turn) to the left for a turn to the left, and the cam needs

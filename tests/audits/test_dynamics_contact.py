@@ -81,11 +81,12 @@ def test_braking_block(scheme, element):
     np.testing.assert_allclose(last.scalars["ALLFD"], 0.5 * v**2, rtol=0.04)
 
 
-@pytest.mark.parametrize("scheme", DAMPED)
-@pytest.mark.parametrize(("angle", "mu"), [(0.3, 0.1), (0.3, 0.5), (-0.4, 0.2)])
-def test_block_on_an_incline(scheme, angle, mu):
+@pytest.mark.parametrize(
+    ("scheme", "slope"), cover(DAMPED, [(0.3, 0.1), (0.3, 0.5), (-0.4, 0.2)], strength=1)
+)
+def test_block_on_an_incline(scheme, slope):
     # Slides with g (sin - mu cos), or stays.
-    g, end = 10.0, 0.4
+    (angle, mu), g, end = slope, 10.0, 0.4
     model = block(angle=angle)
     model.contact("bottom", floor(angle), friction=mu, name="floor")
     model.gravity(y=-g)
@@ -195,8 +196,9 @@ def two_bars(first, second, n, gap, friction=0.0, method="mortar", stretch=1600.
     return model, left
 
 
-@pytest.mark.parametrize("scheme", IMPLICIT)
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+@pytest.mark.parametrize(
+    ("scheme", "method"), cover(IMPLICIT, ["mortar", "node_to_segment"], strength=1)
+)
 def test_collision_of_equal_bars(scheme, method):
     # Waves: both bars exchange their speeds, without vibration, after 2 L / c = 0.05.
     model, left = two_bars(1.0, 1.0, 30, 0.002, method=method)
@@ -452,7 +454,7 @@ def test_rubbing_bodies_seen_from_another_frame(scheme, element, mass):
         model.velocity(lower, x=still[0] + drift[0], y=still[1] + drift[1])
         step = ct.Dynamic(
             period=0.1,
-            increments=20,
+            increments=10,
             scheme=scheme,
             mass=mass,
             rayleigh=(0.0, 1e-3),

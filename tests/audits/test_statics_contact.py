@@ -111,8 +111,10 @@ def test_chain_of_sliding_blocks(element: str, method: Any, angle: float) -> Non
     assert lost[-1] > 1.0
 
 
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
-@pytest.mark.parametrize("element", ["Q4I", "Q8R", "OPT", "T6"])
+@pytest.mark.parametrize(
+    ("element", "method"),
+    cover(["Q4I", "Q8R", "OPT", "T6"], ["mortar", "node_to_segment"], strength=1),
+)
 def test_block_drawn_up_and_let_down_a_slope(element: str, method: Any) -> None:
     """A weight on a slope of 20 degrees, drawn horizontally: W tan(a + phi) up, tan(a - phi) down.
 
@@ -152,8 +154,7 @@ def test_block_drawn_up_and_let_down_a_slope(element: str, method: Any) -> None:
     assert lost < mu * Nd * slip  # it sticks first
 
 
-@pytest.mark.parametrize("sense", [1, -1])
-@pytest.mark.parametrize("element", ["Q4I", "Q8R"])
+@pytest.mark.parametrize(("element", "sense"), cover(["Q4I", "Q8R"], [1, -1], strength=1))
 def test_belt_around_a_drum(element: str, sense: int) -> None:
     """A thin strip over a quarter of a rigid drum: T2 = T1 exp(+-mu beta R/(R + h/2)).
 
@@ -394,9 +395,12 @@ def law_of(kind: str) -> tuple[Any, Any]:
     return ct.PressureLaw("exponential", np.array([p0]), np.array([c])), exponential
 
 
-@pytest.mark.parametrize("kind", ["linear", "tabular", "exponential"])
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
-@pytest.mark.parametrize("element", ["Q4I", "Q8R", "Q9"])
+@pytest.mark.parametrize(
+    ("element", "method", "kind"),
+    cover(
+        ["Q4I", "Q8R", "Q9"], ["mortar", "node_to_segment"], ["linear", "tabular", "exponential"]
+    ),
+)
 def test_laws_of_pressure_in_series_with_blocks(element: str, method: Any, kind: str) -> None:
     """Two blocks come together, press, part and press again: stress and ALLCL by one dimension."""
     if method == "node_to_segment" and element != "Q4I":
@@ -433,9 +437,9 @@ def test_laws_of_pressure_in_series_with_blocks(element: str, method: Any, kind:
         assert force == pytest.approx(-s * t, abs=1e-6)
 
 
-@pytest.mark.parametrize("start", ["keep", "ramp"])
-@pytest.mark.parametrize("slave", ["inner", "outer"])
-@pytest.mark.parametrize("element", ["Q8", "Q8R", "T6"])
+@pytest.mark.parametrize(
+    ("element", "slave", "start"), cover(["Q8", "Q8R", "T6"], ["inner", "outer"], ["keep", "ramp"])
+)
 def test_shrink_fit_with_heat_and_spin(element: str, slave: str, start: Any) -> None:
     """Two rings with an overlap; then the outer one is heated, then both spin: pressure by Lame.
 
@@ -573,8 +577,9 @@ def test_two_tied_halves_roll_up(pair: tuple[str, str]) -> None:
     assert total == pytest.approx(-M, rel=1e-6)
 
 
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
-@pytest.mark.parametrize("element", ["Q4I", "Q8R", "T6"])
+@pytest.mark.parametrize(
+    ("element", "method"), cover(["Q4I", "Q8R", "T6"], ["mortar", "node_to_segment"], strength=1)
+)
 def test_punch_on_a_column_with_friction_and_flow_is_symmetric(element: str, method: Any) -> None:
     """A column crushed between rough plates, beyond yield: mirror image and balance of forces."""
     mesh = ct.mesh.rectangle(1.0, 1.0, 4, 4, CELL[element])

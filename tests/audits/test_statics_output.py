@@ -266,11 +266,18 @@ every, 60.
         assert np.allclose(one.RF, two.RF, rtol=1e-7, atol=1e-9)
 
 
-@pytest.mark.parametrize("format_", ["npz", "vtu", "csv", "pvd"])
-def test_results_converted_by_the_command(tmp_path: Path, format_: str) -> None:
-    """`corota convert` of a result file: the last displacement and the energies are the same."""
+@pytest.fixture(scope="module")
+def results() -> ct.Results:
+    """The first step of the part."""
     model, _, steps = part("Q4I")
-    results = ct.solve(model, steps[:1], threads=1)
+    return ct.solve(model, steps[:1], threads=1)
+
+
+@pytest.mark.parametrize("format_", ["npz", "vtu", "csv", "pvd"])
+def test_results_converted_by_the_command(
+    results: ct.Results, tmp_path: Path, format_: str
+) -> None:
+    """`corota convert` of a result file: the last displacement and the energies are the same."""
     results.write(tmp_path / "job.vtkhdf")
     out = tmp_path / f"new.{format_}"
     assert main(["convert", str(tmp_path / "job.vtkhdf"), str(out)]) == 0

@@ -16,6 +16,7 @@ import corota as ct
 from corota._core import Contact
 from corota.errors import ConvergenceError
 from corota.model.contact import METHODS
+from support.pairs import cover
 from tests.contracts.test_contact_gaps import LENGTHS, chain
 
 
@@ -90,8 +91,9 @@ def test_a_step_that_stops_tells_tipping_from_sliding(
     assert reached == pytest.approx(min(0.5, friction), rel=0.01)
 
 
-@pytest.mark.parametrize("floor", ["rigid", "master", "slave"])
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    ("method", "floor"), cover(METHODS, ["rigid", "master", "slave"], strength=1)
+)
 def test_a_block_tips_about_its_edge(method: str, floor: str) -> None:
     assert tilted(1, method, floor) == pytest.approx(0.5, rel=0.01)
 
@@ -167,9 +169,9 @@ def squeezed(method: str, radius: float, side: str) -> float:
     return -sign * float(last["upper: force y"]) / thin
 
 
-@pytest.mark.parametrize("side", ["rigid", "master", "slave"])
-@pytest.mark.parametrize("radius", [-15.0, 15.0])
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    ("method", "radius", "side"), cover(METHODS, [-15.0, 15.0], ["rigid", "master", "slave"])
+)
 def test_a_ring_squeezed_between_rounds(method: str, radius: float, side: str) -> None:
     """The force does not depend on the rounds: their facets and those of the ring are arcs."""
     assert squeezed(method, radius, side) == pytest.approx(1.0, rel=0.01)

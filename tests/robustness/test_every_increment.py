@@ -2,7 +2,7 @@
 
 The state of an analysis decides all that follows it. So where each checkpoint leads to the next
 one with the same bits, everything after any of them is the same; this is also run out from the
-first, the middle and the last one.
+middle and the last one, and from the first where each one is tried.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
