@@ -38,6 +38,7 @@ from corota.analysis.terms.contact.gaps import (
     RightHandSides,
     sticking,
 )
+from corota.analysis.terms.contact.pair import Linearization
 from corota.errors import SingularError
 from corota.lazy import lazy
 
@@ -668,45 +669,15 @@ def linearized(
     Behind these, of each pair: the slopes of slipping tractions, whose signs are given, over the
     pressure and their tractions at no pressure, shapes (n,).
     """
-    geometric_stiffness, skew, rows, follow, slopes = [], [], [], [], []
-    diagonal, rhs = np.ones(term.n), np.zeros(term.n)
-    force = np.zeros(term.system.n_dofs)
-    expected = 0
+    geometric_stiffness, skew, slopes = [], [], []
+    added = Linearization(np.ones(term.n), np.zeros(term.n), np.zeros(term.system.n_dofs))
     each = zip(term.each(at.terms, at.multipliers), states, slip_directions, strict=True)
     for (pair, terms, (p, q)), state, slip_direction in each:
-        first, second, end = pair.first, pair.first + pair.n, pair.first + pair.width
-        dp, rp, dq, rq, ratio, level = pair.rows(terms, state, p, q, slip_direction)
-        slopes.append((ratio, level))
-        closed, sticks, share = state != OPEN, state == CLOSED, pair.share
-        diagonal[first:second], rhs[first:second] = share * dp, share * rp
-        expected += int(closed.sum())
-        acting = terms.acting
-        to_rows = pair.dofs(terms.variables)
-        to_acting = to_rows if acting is terms else pair.dofs(acting.variables)
-
-        # A gradient at the end in rows and columns; forces may act along another.
-        parts = [("gap_gradient", first, closed, share), ("slip_gradient", second, sticks, 1.0)]
-        for name, start, chosen, weight in parts[: 1 + pair.two]:
-            k, own = terms.constraint, weight * getattr(terms, name)
-            rows.append(border(to_rows, start + k, -own, chosen[k]))
-            if acting is not terms:
-                follow.append(border(to_rows, start + k, own, chosen[k]))
-                k, own = acting.constraint, weight * getattr(acting, name)
-                follow.append(border(to_acting, start + k, -own, chosen[k]))
-        # Tractions that are known after the correction go to the right-hand side.
-        known, shear = np.where(closed, 0.0, -share * p), np.zeros(pair.n)
-        if pair.two:
-            diagonal[second:end], rhs[second:end] = dq, rq
-            expected += int(sticks.sum())
-            shear = np.where(sticks, 0.0, ratio * p + level - q)
-            k = acting.constraint
-            slope = -ratio[k, None] * acting.slip_gradient
-            follow.append(border(to_acting, first + k, slope, state[k] == SLIPPING))
-        pair.add_forces(acting, known, shear, force)
+        slopes.append(pair.linearize(terms, state, p, q, slip_direction, added))
         if pair.active and term.system.nlgeom and (p.any() or q.any()):
             # Half way an end moves by half.
-            half = 1.0 if acting is terms else 0.5
-            even, odd = second_derivatives(term, pair, half * share * p, half * q)
+            half = 1.0 if terms.between is None else 0.5
+            even, odd = second_derivatives(term, pair, half * pair.share * p, half * q)
             geometric_stiffness.append(even)
             skew.append(odd)
 
@@ -721,13 +692,13 @@ def linearized(
     coupling = Coupling(
         Triplets.join(geometric_stiffness),
         Triplets.join(skew if slips else []),
-        Triplets.join(rows),
-        Triplets.join(follow),
-        diagonal,
-        force,
+        Triplets.join(added.rows),
+        Triplets.join(added.follow),
+        added.diagonal,
+        added.force,
         near,
     )
-    return coupling, rhs, expected, slopes
+    return coupling, added.rhs, added.expected, slopes
 
 
 def second_derivatives(
@@ -772,15 +743,6 @@ def _near(term: ContactTerm, pair: Pair, terms: Terms) -> tuple[Ints, Ints]:
     if pair.two:
         own = np.concatenate([own, np.where(own >= 0, own + pair.n, -1)], axis=1)
     return pair.dofs(variables), own
-
-
-def border(where: Ints, column: Ints, gradient: Floats, rows: NDArray[np.bool_]) -> Triplets:
-    """Gradients of some terms as columns."""
-    where, gradient = where[rows], gradient[rows]
-    columns = np.repeat(column[rows], where.shape[1])
-    flat, values = where.ravel(), gradient.ravel()
-    keep = (flat >= 0) & (values != 0.0)
-    return Triplets(flat[keep], columns[keep], values[keep])
 
 
 def stacked(parts: list[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:

@@ -9,13 +9,14 @@ across a body may be outside again on its other side; such an increment is refus
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 import corota._core as _core
+from corota.analysis.linear.triplets import Triplets
 from corota.analysis.terms.contact.gaps import (
     CLOSED,
     OPEN,
@@ -74,6 +75,30 @@ WEAK = 0.2
 #: Search radius: fraction of the reach, and of the width of a body, that a node may move without
 #: this check; in relaxation, fraction of the shortest slave edge from a position to the next.
 UNSEEN = 0.5
+
+
+@dataclass
+class Linearization:
+    """What linearized constraints add to the matrix of the bodies; see :class:`Coupling`.
+
+    Parameters
+    ----------
+    diagonal, rhs : ndarray, shape (n_multipliers,)
+        Of the rows of the multipliers.
+    force : ndarray, shape (n_dofs,)
+        Of tractions that are known after the correction.
+    rows, follow : list of Triplets
+        Gradients of what is closed and sticks, and what makes them unsymmetric.
+    expected : int
+        Negative pivots that the constraints have.
+    """
+
+    diagonal: Floats
+    rhs: Floats
+    force: Floats
+    rows: list[Triplets] = field(default_factory=list)
+    follow: list[Triplets] = field(default_factory=list)
+    expected: int = 0
 
 
 class Pair:
@@ -614,6 +639,52 @@ class Pair:
                 found[2][k] -= self.redundant * self.full[k] / self.stiffness[k]
         return tuple(found)  # type: ignore[return-value]
 
+    def linearize(
+        self,
+        terms: Terms,
+        state: NDArray[np.int8],
+        p: Floats,
+        q: Floats,
+        slip_direction: Floats,
+        added: Linearization,
+    ) -> tuple[Floats, Floats]:
+        """Add the constraints linearized about their states; all arrays have the shape (n,).
+
+        Returns
+        -------
+        follow, level : ndarray, shape (n,)
+            See :meth:`rows`.
+        """
+        first, second, end = self.first, self.first + self.n, self.first + self.width
+        dp, rp, dq, rq, ratio, level = self.rows(terms, state, p, q, slip_direction)
+        closed, sticks, share = state != OPEN, state == CLOSED, self.share
+        added.diagonal[first:second], added.rhs[first:second] = share * dp, share * rp
+        added.expected += int(closed.sum())
+        acting = terms.acting
+        to_rows = self.dofs(terms.variables)
+        to_acting = to_rows if acting is terms else self.dofs(acting.variables)
+
+        # A gradient at the end in rows and columns; forces may act along another.
+        parts = [("gap_gradient", first, closed, share), ("slip_gradient", second, sticks, 1.0)]
+        for name, start, chosen, weight in parts[: 1 + self.two]:
+            k, own = terms.constraint, weight * getattr(terms, name)
+            added.rows.append(_columns(to_rows, start + k, -own, chosen[k]))
+            if acting is not terms:
+                added.follow.append(_columns(to_rows, start + k, own, chosen[k]))
+                k, own = acting.constraint, weight * getattr(acting, name)
+                added.follow.append(_columns(to_acting, start + k, -own, chosen[k]))
+        # Tractions that are known after the correction go to the right-hand side.
+        known, shear = np.where(closed, 0.0, -share * p), np.zeros(self.n)
+        if self.two:
+            added.diagonal[second:end], added.rhs[second:end] = dq, rq
+            added.expected += int(sticks.sum())
+            shear = np.where(sticks, 0.0, ratio * p + level - q)
+            k = acting.constraint
+            slope = -ratio[k, None] * acting.slip_gradient
+            added.follow.append(_columns(to_acting, first + k, slope, state[k] == SLIPPING))
+        self.add_forces(acting, known, shear, added.force)
+        return ratio, level
+
     def backed(self, terms: Terms, state: NDArray[np.int8]) -> Ints:
         """Closed constraints of corners beside which a slave node is closed as well."""
         own = terms.constraint >= self.of_surfaces
@@ -798,6 +869,15 @@ class Pair:
             grown = left - float((leaves * at_first).sum())
             self.friction_work += (1.0 - end) * max(left, 0.0) * way
             self.beyond_trapezoid += 0.5 * max(grown, 0.0) * way + (0.5 * comes if turns else 0.0)
+
+
+def _columns(where: Ints, column: Ints, gradient: Floats, rows: NDArray[np.bool_]) -> Triplets:
+    """Gradients of some terms as columns."""
+    where, gradient = where[rows], gradient[rows]
+    columns = np.repeat(column[rows], where.shape[1])
+    flat, values = where.ravel(), gradient.ravel()
+    keep = (flat >= 0) & (values != 0.0)
+    return Triplets(flat[keep], columns[keep], values[keep])
 
 
 def _turn(old: Floats, new: Floats) -> float:
