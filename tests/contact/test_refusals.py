@@ -73,7 +73,7 @@ def test_reference_node_that_is_not_there():
         ({"method": "magic"}, "no contact method 'magic'"),
         ({"friction": -0.1}, "friction of a contact pair must be a number >= 0"),
         ({"friction": None}, "friction of a contact pair must be a number >= 0"),
-        ({"start": "now"}, "start must be one of keep, adjust, ramp"),
+        ({"start": "now"}, "no start .now.; there are keep, adjust, ramp"),
         ({"clearance": np.nan}, "clearance of a contact pair must be finite"),
     ],
 )

@@ -10,6 +10,7 @@ import numpy as np
 
 from corota.display import Brief
 from corota.errors import InputError, Location, ModelError
+from corota.names import choose_attribute
 from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
@@ -81,8 +82,7 @@ class Coupling(Brief):
     def __post_init__(self) -> None:
         if not self.dofs or not set(self.dofs) <= {0, 1, 2}:
             raise InputError("the dofs of a coupling are 0, 1 and 2", self.where)
-        if self.kind not in ("kinematic", "distributing"):
-            raise InputError(f"no coupling {self.kind!r}: kinematic or distributing", self.where)
+        choose_attribute(self, "kind", ("kinematic", "distributing"), "coupling", self.where)
         if self.weights is not None:
             self.weights = np.asarray(self.weights, dtype=np.float64)
             if not (np.isfinite(self.weights).all() and (self.weights > 0.0).all()):

@@ -13,6 +13,7 @@ import corota._core as _core
 from corota.display import Brief
 from corota.errors import InputError, Location, number
 from corota.model.friction import MOST_FRICTION, Friction, coefficients, described, largest
+from corota.names import choose_attribute
 from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
@@ -216,10 +217,7 @@ class PressureLaw(Brief):
         p = self.pressure = np.atleast_1d(np.asarray(self.pressure, np.float64))
         w = self.overclosure = np.atleast_1d(np.asarray(self.overclosure, np.float64))
         known = [name for name in _core.contact_laws()[0] if name != "hard"]
-        if self.kind not in known:
-            raise InputError(
-                f"no pressure law {self.kind!r}; there are {', '.join(known)}", self.where
-            )
+        choose_attribute(self, "kind", known, "pressure law", self.where)
         if not (np.isfinite(p).all() and np.isfinite(w).all()):
             raise InputError("the numbers of a pressure law must be finite", self.where)
         if self.kind == "tabular":
@@ -347,14 +345,8 @@ class ContactPair(Brief):
     images: Ints | None = field(default=None, kw_only=True, repr=False)
 
     def __post_init__(self) -> None:
-        if self.method not in METHODS:
-            raise InputError(
-                f"no contact method {self.method!r}; there are {', '.join(METHODS)}", self.where
-            )
-        if self.start not in STARTS:
-            raise InputError(
-                f"start must be one of {', '.join(STARTS)}, not {self.start!r}", self.where
-            )
+        choose_attribute(self, "method", METHODS, "contact method", self.where)
+        choose_attribute(self, "start", STARTS, "start", self.where)
         for what, value in (
             ("friction", largest(self.friction)),
             *(("friction", largest(value)) for value in self.friction_steps.values()),

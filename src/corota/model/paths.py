@@ -13,6 +13,7 @@ from corota.display import Brief
 from corota.errors import InputError, number
 from corota.model.dofs import dof_index
 from corota.model.settings import Settings
+from corota.names import choose_attribute
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -74,8 +75,7 @@ class ArcLength(Brief, Settings):
     stop_at_limit: bool = False
 
     def __post_init__(self) -> None:
-        if self.shape not in ("cylindrical", "spherical"):
-            raise InputError(f"shape must be 'cylindrical' or 'spherical', not {self.shape!r}")
+        choose_attribute(self, "shape", ("cylindrical", "spherical"), "shape")
         if self.side not in (1, -1):
             raise InputError(f"side must be 1 or -1, not {self.side!r}")
         if self.branch < 1:

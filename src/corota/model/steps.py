@@ -409,10 +409,7 @@ class Static(Step):
 
     def __post_init__(self) -> None:
         number(self.plastic_increment, "plastic_increment", self.where, least=0.0)
-        if self.at_limit not in ("stop", "follow"):
-            raise InputError(
-                f"at_limit must be 'stop' or 'follow', not {self.at_limit!r}", self.where
-            )
+        choose_attribute(self, "at_limit", ("stop", "follow"), "at_limit", self.where)
         self._control_numbers()
         choose_attribute(self, "at_bifurcation", AT_BIFURCATION, "at_bifurcation", self.where)
         if self.path is not None:
