@@ -109,11 +109,11 @@ def model_of(saved: Saved, model: Model | None = None) -> tuple[Model, list[Step
     return model, list(model.steps)
 
 
-def files_of(saved: Saved, folder: str | PathLike[str] | None = None) -> JobFiles:
+def files_of(saved: Saved) -> JobFiles:
     """The files of a run, to be continued."""
     options = saved.options
     return JobFiles(
-        saved.path.parent if folder is None else folder,
+        saved.path.parent,
         saved.job,
         formats=options["formats"],
         histories=options["histories"],

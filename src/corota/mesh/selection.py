@@ -103,7 +103,7 @@ def pairs(given: ArrayLike, count: int | None = None, where: Location | None = N
     return array.astype(np.int64)
 
 
-def one(given: object, what: str, count: int | None = None, where: Location | None = None) -> int:
+def one(given: object, what: str, count: int) -> int:
     """One index.
 
     Raises
@@ -112,8 +112,8 @@ def one(given: object, what: str, count: int | None = None, where: Location | No
         If it is not an index, or out of range.
     """
     if isinstance(given, (bool, np.bool_)) or not isinstance(given, (int, np.integer)):
-        raise InputError(f"a {what} is given by its index, not {given!r}", where)
-    _in_range(np.array([int(given)]), what, count, where)
+        raise InputError(f"a {what} is given by its index, not {given!r}")
+    _in_range(np.array([int(given)]), what, count, None)
     return int(given)
 
 

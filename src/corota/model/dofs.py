@@ -39,7 +39,7 @@ def dof_index(dof: object, where: Location | None = None) -> int:
     )
 
 
-def dof_indices(dofs: object, where: Location | None = None) -> tuple[int, ...]:
+def dof_indices(dofs: object) -> tuple[int, ...]:
     """Numbers of the dofs in ``"x y"``, or in a sequence of names or numbers.
 
     Raises
@@ -49,5 +49,5 @@ def dof_indices(dofs: object, where: Location | None = None) -> tuple[int, ...]:
     """
     names = dofs.split() if isinstance(dofs, str) else dofs
     if not isinstance(names, (list, tuple)) or not names:
-        raise InputError(f"dofs are named as in 'x y rotation', not {dofs!r}", where)
-    return tuple(dof_index(name, where) for name in names)
+        raise InputError(f"dofs are named as in 'x y rotation', not {dofs!r}")
+    return tuple(dof_index(name) for name in names)

@@ -124,7 +124,7 @@ def has_stability(results: ResultSource | None) -> bool:
     )
 
 
-def draw_path(ax: Any, x: Floats, y: Floats, results: ResultSource, *, legend: bool = True) -> None:
+def draw_path(ax: Any, x: Floats, y: Floats, results: ResultSource) -> None:
     """Draw a path on axes.
 
     Parameters
@@ -169,5 +169,4 @@ def draw_path(ax: Any, x: Floats, y: Floats, results: ResultSource, *, legend: b
                 clip_on=False,
                 label=name,
             )
-    if legend:
-        ax.legend()
+    ax.legend()

@@ -47,12 +47,13 @@ def column(element: str = "Q8", length: float = 100.0, depth: float = 2.0, n: in
     return model
 
 
-def euler_load(length: float = 100.0, depth: float = 2.0, young: float = 1000.0) -> float:
+def euler_load() -> float:
     """Buckling load of the cantilever column, with shear and shortening.
 
     Engesser's form of the Timoshenko column with kappa = 5/6 and nu = 0; shortening enters at
     the order of the critical strain.
     """
+    length, depth, young = 100.0, 2.0, 1000.0
     bending = young * depth**3 / 12.0
     euler = np.pi**2 * bending / (4.0 * length**2)
     return euler / (1.0 + euler / (5.0 / 6.0 * 0.5 * young * depth))

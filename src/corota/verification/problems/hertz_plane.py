@@ -40,10 +40,10 @@ def solved(plane: Any, element: str, n: int) -> ct.Results:
     return run(cylinder(plane, n, element), ct.Static(nlgeom=False), fields=True)
 
 
-def approach(plane: str, force: float = FORCE) -> float:
+def approach(plane: str) -> float:
     """Way of the middle plane towards each of two plates (Johnson 1985, 5.57)."""
     modulus = YOUNG if plane == "stress" else YOUNG / (1.0 - NU**2)
-    return force / (math.pi * modulus) * (2.0 * math.log(4.0 * RADIUS / theory(plane)[0]) - 1.0)
+    return FORCE / (math.pi * modulus) * (2.0 * math.log(4.0 * RADIUS / theory(plane)[0]) - 1.0)
 
 
 @cache
