@@ -29,10 +29,7 @@ def run(args: Any, terminal: Terminal) -> int:
     model = examples.load(args.name)
     terminal.line(examples.describe(args.name))
     folder = Path(args.output or Path("corota-demo") / model.name)
-    with (
-        JobFiles(folder, model.name) as files,
-        warnings.catch_warnings(),
-    ):
+    with JobFiles(folder, model.name) as files, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # they are among the notes of the results
         results = solve(model, observers=[files, Progress(terminal, args.verbose)])
     for note in results.notes:

@@ -232,11 +232,7 @@ def _plot(add: Add) -> None:
     add("--plastic", action="store_true", help="the elastic-plastic boundary as a line")
     add("--edges", action=argparse.BooleanOptionalAction, help="draw element edges")
     add("--model", action="store_true", help="mesh, sets, supports and loads")
-    add(
-        "--curve",
-        metavar="X,Y",
-        help="a curve, such as 'U2@TIP,load factor'",
-    )
+    add("--curve", metavar="X,Y", help="a curve, such as 'U2@TIP,load factor'")
     add(
         "--contact",
         nargs="?",

@@ -15,13 +15,7 @@ from corota.results.extremes import Extreme, extremes_of_row, no_points, row_of
 from corota.results.history import History
 from corota.results.measures import MEASURES, stage_measure
 from corota.results.table import NODAL, TABLE
-from corota.results.variables import (
-    ALIASES,
-    available,
-    match_name,
-    nodal_value,
-    point_value,
-)
+from corota.results.variables import ALIASES, available, match_name, nodal_value, point_value
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -43,10 +43,7 @@ SCALARS: dict[str, tuple[str, str]] = {
         ("ALLSE", "ALLPD", "ALLCD", "ALLDMD", "ALLAE", "ALLIE", "ALLKE", "ALLVD", "ALLFD"),
         ("part of the energy balance", "energy"),
     ),
-    **dict.fromkeys(
-        ("ALLSD", "ALLCL"),
-        ("part of the energy balance", "energy"),
-    ),
+    **dict.fromkeys(("ALLSD", "ALLCL"), ("part of the energy balance", "energy")),
     **dict.fromkeys(
         ("ALLPW", "ALLWK", "ALLTH", "ETOTAL"), ("part of the energy balance", "energy")
     ),

@@ -163,13 +163,7 @@ class Constraints:
         The others: the unknowns.
     """
 
-    def __init__(
-        self,
-        model: Model,
-        start: Ints,
-        carried: Ints,
-        matrix: SymmetricPattern,
-    ) -> None:
+    def __init__(self, model: Model, start: Ints, carried: Ints, matrix: SymmetricPattern) -> None:
         from corota.analysis.constraints.setup import Builder
         from corota.analysis.linear.reduction import Reduction, Rows
 

@@ -297,12 +297,7 @@ class LinearMotion(Linearized):
         Whether Coriolis forces of that frame count among the damping.
     """
 
-    def __init__(
-        self,
-        system: System,
-        u: Floats,
-        kind: str = "consistent",
-    ) -> None:
+    def __init__(self, system: System, u: Floats, kind: str = "consistent") -> None:
         # Body loads have the stiffness of the inertial mass, see `loads.body`.
         system.conditions.set_mass(kind)
         super().__init__(system, u)

@@ -82,10 +82,7 @@ UNSUPPORTED: dict[str, str] = {
     "CHANGECONTACTTYPE": _CHANGE,
     "SURFACESMOOTHING": "give round rigid surfaces by *SURFACE, TYPE=SEGMENTS with CIRCL",
     "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
-    **dict.fromkeys(
-        ("CYCLICSYMMETRYMODEL",),
-        _MPC,
-    ),
+    **dict.fromkeys(("CYCLICSYMMETRYMODEL",), _MPC),
     **dict.fromkeys(
         (
             "HEATTRANSFER",

@@ -19,13 +19,7 @@ from corota.io.datasets import Series, make_group, store
 from corota.io.description import store_description
 from corota.io.file_options import FileOptions, wanted
 from corota.io.finite import check_frame
-from corota.io.vtk.frame_arrays import (
-    cell_data,
-    halved,
-    nodes_of_sections,
-    point_data,
-    scalars,
-)
+from corota.io.vtk.frame_arrays import cell_data, halved, nodes_of_sections, point_data, scalars
 from corota.io.vtk.grid import Grid
 from corota.lazy import lazy
 from corota.results import variables as vf

@@ -26,11 +26,7 @@ from corota.verification.models import run
 CASES: dict[str, tuple[Callable[[], tuple[ct.Model, int]], float, tuple[float, float]]] = {
     "Lee's frame": (lee_frame, -62.0, (1.8544527, -0.93924896)),
     "Williams' toggle": (williams_toggle, -0.7, (33.847716, 31.246220)),
-    "Lee's frame without shear": (
-        lambda: lee_frame(shear=False),
-        -62.0,
-        (1.8556728, -0.94144316),
-    ),
+    "Lee's frame without shear": (lambda: lee_frame(shear=False), -62.0, (1.8556728, -0.94144316)),
     "Williams' toggle without shear": (
         lambda: williams_toggle(shear=False),
         -0.7,

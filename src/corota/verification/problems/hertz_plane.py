@@ -19,15 +19,7 @@ import numpy as np
 
 import corota as ct
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
-from corota.verification.contact_models import (
-    FORCE,
-    NU,
-    RADIUS,
-    YOUNG,
-    cylinder,
-    measured,
-    theory,
-)
+from corota.verification.contact_models import FORCE, NU, RADIUS, YOUNG, cylinder, measured, theory
 from corota.verification.models import run
 
 SHEAR, DEPTH = 0.3002831, 0.7861514
