@@ -124,5 +124,6 @@ def test_every_public_law_is_here() -> None:
         if home.startswith("corota.model.") and issubclass(type(found := getattr(ct, name)), type)
         if issubclass(found, Material)
     }
-    assert public - names == {"CompiledMaterial", "MaterialTable", "Umat", "UserMaterial"}
-    assert ENERGIES.keys() == set(laws_of_energies())
+    other = {"CompiledMaterial", "MaterialTable", "Umat", "UserMaterial"}
+    assert public - names == other, "enter the law in LAWS of tests/support/laws.py"
+    assert ENERGIES.keys() == set(laws_of_energies()), "and its energy in ENERGIES there"
