@@ -69,9 +69,9 @@ explanation = lazy("corota.analysis.terms.contact.output:explanation")
 pressures = lazy("corota.analysis.terms.contact.output:pressures")
 
 #: Search radius: displacement of an increment found by pivoting, relative to its first correction,
-#: beyond which it counts as a jump to another equilibrium; driven by supports, and by forces, under
-#: which it would pass a limit point unseen.
-JUMP, JUMP_OF_FORCE = 10.0, 4.0
+#: beyond which it counts as a jump to another equilibrium. Under forces it passes a limit point
+#: unseen from twice of it on.
+JUMP = 4.0
 #: Merit of a correction: fraction of the friction bound from which it is repeated with slip.
 FRICTION_EXCESS = 2.0
 
@@ -618,9 +618,7 @@ class ContactEquations:
     def near(self, u: Floats) -> bool:
         """Whether an equilibrium is near the start, as far as its first correction says."""
         moved = float(np.abs((u - self.origin)[~self.system.is_rotation]).max())
-        forces = bool(np.any(self.system.load_rate(u)[0]))
-        limit = (JUMP_OF_FORCE if forces else JUMP) * self.first_move
-        return limit == 0.0 or moved <= limit
+        return not self.first_move or moved <= JUMP * self.first_move
 
     @property
     def force(self) -> Floats:
