@@ -47,7 +47,7 @@ fn sheet(n: usize, shuffled: bool) -> Problem {
 fn any_number_of_threads_gives_the_same_bits() {
     for shuffled in [false, true] {
         let run = |threads: usize| {
-            let mut problem = sheet(90, shuffled);
+            let mut problem = sheet(60, shuffled);
             problem.set_threads(threads);
             let (n, nnz) = (problem.dofs.n_dofs(), problem.dofs.indices.len());
             let u: Vec<f64> = (0..n).map(|i| 0.1 * (i as f64).cos()).collect();
@@ -57,7 +57,7 @@ fn any_number_of_threads_gives_the_same_bits() {
             out.map(|v| v.into_iter().map(f64::to_bits).collect::<Vec<_>>())
         };
         let one = run(1);
-        for threads in [2, 3, 4, 8] {
+        for threads in [2, 3, 8] {
             assert!(run(threads) == one, "{threads} threads, shuffled {shuffled}");
         }
     }

@@ -27,7 +27,7 @@ fn states<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>(
         for plane in [Plane::Stress, Plane::Strain] {
             let section = section::<E, N, M, A>(plane, strain);
             for nlgeom in [true, false] {
-                for _ in 0..25 {
+                for _ in 0..12 {
                     let x = cell::<N>(E::CELL, &mut random, 0.05);
                     // A fixed frame is for small rotations.
                     let angle = if nlgeom { 10.0 * random.signed() } else { 0.1 };

@@ -91,7 +91,7 @@ fn threads_do_not_change_a_bit() {
     let mut solver = Ldlt::default();
     solver.analyze(&upper.pattern()).unwrap();
     assert!(solver.pieces() > 8, "the tree must be cut for this test to mean anything");
-    for threads in [1, 2, 3, 4, 8, 1] {
+    for threads in [1, 2, 3, 8] {
         solver.set_threads(threads);
         solver.factorize(&upper.values).unwrap();
         let mut x = b.clone();
