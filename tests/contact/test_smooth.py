@@ -34,6 +34,14 @@ def test_straight_boundaries_and_sharp_corners_stay():
     assert not shapes.any()
 
 
+def test_fine_rounds_are_smoothed_and_rounding_is_not():
+    """A round of 1000 edges counted as a polygon: its turns are below half a degree."""
+    points = arc(1000, 2.0 * np.pi)[:-1]
+    assert (smoothed(points, boundary(points, closed=True))[2] == 1).all()
+    turned = np.array([(np.cos(0.7), np.sin(0.7))]) * np.linspace(0.0, 1.0, 400)[:, None]
+    assert not smoothed(turned, boundary(turned))[2].any()
+
+
 def test_pieces_join_round_the_boundary():
     points = np.vstack([arc(6, np.pi / 2), [(-1.0, 1.0)], [(-1.0, -1.0)]])
     nodes, _, shapes = smoothed(points, boundary(points))
