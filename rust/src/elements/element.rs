@@ -110,6 +110,8 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     /// Member of this memory with the work that the element has dissipated beside its points.
     const DISSIPATED: Option<usize> = None;
 
+    /// Element whose compiled code evaluates this one: itself, or one with another rule.
+    type Code: Element<N, M, A>;
     type Op<T: Real>: Operator<T, N, M>;
     /// What is computed once per element before its points.
     type Prepared<T: Real>: Copy;

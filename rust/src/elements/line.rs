@@ -113,6 +113,7 @@ fn linear(xi: [f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
 /// What bars of two nodes have in common: one point, a mass along the line, no strain operator.
 macro_rules! bar {
     ($op:ident, $zero:expr) => {
+        type Code = Self;
         type Op<T: Real> = $op<T, 2>;
         type Prepared<T: Real> = ();
 
@@ -390,6 +391,7 @@ impl Element<2, 2, 0> for Spring {
     const LINE: bool = true;
     const SPRING: bool = true;
     const OUTPUTS: &'static [&'static str] = &["N"];
+    type Code = Self;
     type Op<T: Real> = Grad<T, 2>;
     type Prepared<T: Real> = ();
 
@@ -463,6 +465,7 @@ macro_rules! dof_spring {
             const SPRING: bool = true;
             const TURNS: bool = false;
             const OUTPUTS: &'static [&'static str] = &["N"];
+            type Code = Self;
             type Op<T: Real> = $op<T, $n>;
             type Prepared<T: Real> = ();
 

@@ -36,6 +36,7 @@ impl Element<3, 3, 0> for Opt {
     const NAME: &'static str = "OPT";
     const CELL: &'static str = "tri3";
     const ALPHA_B: f64 = ALPHA_B;
+    type Code = Self;
     type Op<T: Real> = Full<T, 3>;
     type Prepared<T: Real> = Prepared<T>;
 

@@ -14,6 +14,7 @@ impl Element<4, 2, 0> for Q4 {
     const NAME: &'static str = "Q4";
     const CELL: &'static str = "quad4";
     const BENDING_CELLS: usize = 8;
+    type Code = Self;
     type Op<T: Real> = Grad<T, 4>;
     type Prepared<T: Real> = ();
 

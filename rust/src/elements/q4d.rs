@@ -15,6 +15,7 @@ impl Element<4, 3, 1> for Q4d {
     const NAME: &'static str = "Q4D";
     const CELL: &'static str = "quad4";
     const ALPHA_B: f64 = 1.0;
+    type Code = Self;
     type Op<T: Real> = Drilling<T, 4>;
     /// Bulges of the edges.
     type Prepared<T: Real> = [[T; 2]; 4];

@@ -17,6 +17,7 @@ impl Element<4, 3, 2> for Q4di {
     const NAME: &'static str = "Q4DI";
     const CELL: &'static str = "quad4";
     const ALPHA_B: f64 = Q4d::ALPHA_B;
+    type Code = Self;
     type Op<T: Real> = Drilling<T, 4>;
     type Prepared<T: Real> = (Center<T>, [[T; 2]; 4]);
 

@@ -24,6 +24,7 @@ impl Element<4, 2, 2> for Q4i {
     const NAME: &'static str = "Q4I";
     const CELL: &'static str = "quad4";
     const FREE_VOLUME: bool = true;
+    type Code = Self;
     type Op<T: Real> = Grad<T, 4>;
     type Prepared<T: Real> = Center<T>;
 

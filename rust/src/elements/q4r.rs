@@ -22,6 +22,7 @@ impl Element<4, 2, 0> for Q4r {
     const FREE_VOLUME: bool = true;
     const MEMORY: usize = hourglass::MEMORY;
     const DISSIPATED: Option<usize> = Some(hourglass::DISSIPATED);
+    type Code = Self;
     type Op<T: Real> = Grad<T, 4>;
     const EDGE: f64 = 1.0;
     /// Slopes of the thickness in natural coordinates, over its mean.

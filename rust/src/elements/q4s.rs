@@ -16,6 +16,7 @@ impl Element<4, 2, 2> for Q4s {
     const CELL: &'static str = "quad4";
     const FREE_VOLUME: bool = true;
     const ABOUT_MEAN: bool = true;
+    type Code = Self;
     type Op<T: Real> = Grad<T, 4>;
     type Prepared<T: Real> = Center<T>;
 

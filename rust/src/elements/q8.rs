@@ -13,6 +13,7 @@ pub struct Q8;
 impl Element<8, 2, 0> for Q8 {
     const NAME: &'static str = "Q8";
     const CELL: &'static str = "quad8";
+    type Code = Self;
     type Op<T: Real> = Grad<T, 8>;
     type Prepared<T: Real> = ();
 
@@ -43,6 +44,7 @@ impl Element<8, 2, 0> for Q8r {
     const CELL: &'static str = "quad8";
     const FREE_VOLUME: bool = true;
     const HOURGLASS: usize = 1;
+    type Code = Q8;
     type Op<T: Real> = Grad<T, 8>;
     type Prepared<T: Real> = ();
 

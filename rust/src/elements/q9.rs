@@ -13,6 +13,7 @@ pub struct Q9;
 impl Element<9, 2, 0> for Q9 {
     const NAME: &'static str = "Q9";
     const CELL: &'static str = "quad9";
+    type Code = Self;
     type Op<T: Real> = Grad<T, 9>;
     type Prepared<T: Real> = ();
 

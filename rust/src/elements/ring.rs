@@ -187,6 +187,7 @@ where
     const MEAN_DILATATION: bool = E::MEAN_DILATATION;
     const MEMORY: usize = E::MEMORY;
     const DISSIPATED: Option<usize> = E::DISSIPATED;
+    type Code = Self;
     type Op<T: Real> = Hoop<T, N>;
     type Prepared<T: Real> = E::Prepared<T>;
 
@@ -275,6 +276,7 @@ where
     const MEAN_DILATATION: bool = E::MEAN_DILATATION;
     const MEMORY: usize = E::MEMORY;
     const DISSIPATED: Option<usize> = E::DISSIPATED;
+    type Code = Self;
     type Op<T: Real> = E::Op<T>;
     type Prepared<T: Real> = E::Prepared<T>;
 

@@ -14,6 +14,7 @@ impl Element<3, 2, 0> for T3 {
     const NAME: &'static str = "T3";
     const CELL: &'static str = "tri3";
     const BENDING_CELLS: usize = 16;
+    type Code = Self;
     type Op<T: Real> = Grad<T, 3>;
     type Prepared<T: Real> = ();
 

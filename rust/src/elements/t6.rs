@@ -13,6 +13,7 @@ pub struct T6;
 impl Element<6, 2, 0> for T6 {
     const NAME: &'static str = "T6";
     const CELL: &'static str = "tri6";
+    type Code = Self;
     type Op<T: Real> = Grad<T, 6>;
     type Prepared<T: Real> = ();
 

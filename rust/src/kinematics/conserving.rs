@@ -21,9 +21,9 @@
 
 use super::corotation::Frame;
 use super::inertia::{Mass, MassKind};
-use super::integrate::{History, Local, Section, flowed, local};
+use super::integrate::{History, Local, Section, flowed};
+use super::kernels::Kernels;
 use crate::base::small::{Blocks, Nodal, blocks, nodal};
-use crate::elements::Element;
 use crate::elements::element::Wanted;
 use crate::materials::Clock;
 
@@ -151,23 +151,25 @@ pub struct Answer<const N: usize, const M: usize> {
     pub failed: bool,
 }
 
-/// Internal and inertia force of an element between `u0` and `u1`. `rates` holds the carried
-/// velocities of the bulges at the start; those at the end are written to `rates_end`.
-pub fn element<E, const N: usize, const M: usize, const A: usize>(
+/// Internal and inertia force of an element between `u0` and `u1`. `rates` are the carried
+/// velocities of the bulges: those at the start, and those at the end, which are written.
+pub fn element<const N: usize, const M: usize>(
+    kernels: &Kernels<N, M>,
     x: &Nodal<f64, N, 2>,
     section: &Section<N>,
     history: &mut History<'_>,
     mass: (&Mass<f64, N>, MassKind),
     step: &Step<'_, N, M>,
-    rates: &[[f64; 2]; N],
-    rates_end: &mut [[f64; 2]; N],
-) -> Answer<N, M>
-where
-    E: Element<N, M, A>,
-{
-    if E::RING {
-        return ring::<E, N, M, A>(x, section, history, mass, step);
-    }
+    rates: (&[[f64; 2]; N], &mut [[f64; 2]; N]),
+) -> Answer<N, M> {
+    let Some((local_into, absorbed_at)) = kernels.in_frame else {
+        return ring(kernels, x, section, history, mass, step);
+    };
+    let local = |x: &_, q: &_, section: &_, history: &mut History<'_>, tangent| {
+        let mut out = Local::zero();
+        local_into(x, q, section, history, tangent, &mut out);
+        out
+    };
     let f0 = Frame::new(x, step.u0, step.nlgeom);
     let f1 = Frame::new(x, step.u1, step.nlgeom);
     // Linear in all: the energy is quadratic, and the mean force of both ends exact.
@@ -176,13 +178,13 @@ where
     let accounts = section.law.n_state() == 0 || section.law.work_member().is_some();
     let clock = history.clock;
     history.clock = passed(clock, 0.0);
-    let begin = local::<E, f64, N, M, A>(x, &f0.q, section, history, false);
+    let begin = local(x, &f0.q, section, history, false);
     let mut energy = [0.0; 2];
     if curved && accounts {
-        energy[0] = E::absorbed_at(x, &f0.q, section, history);
+        energy[0] = absorbed_at(x, &f0.q, section, history);
     }
     history.clock = clock;
-    let mut end = local::<E, f64, N, M, A>(x, &f1.q, section, history, step.tangent);
+    let mut end = local(x, &f1.q, section, history, step.tangent);
     let mut failed = begin.failed | end.failed;
     let mut mean = nodal::<f64, N, M>();
     let flows = flowed(section, history);
@@ -191,7 +193,7 @@ where
         for (s, weight) in ALONG {
             let q = between_ends(&f0.q, &f1.q, s);
             history.clock = passed(clock, s);
-            let at = local::<E, f64, N, M, A>(x, &q, section, history, step.tangent);
+            let at = local(x, &q, section, history, step.tangent);
             failed |= at.failed;
             for a in 0..N {
                 for i in 0..M {
@@ -210,7 +212,7 @@ where
         }
         // The history is that of the end again.
         history.clock = clock;
-        local::<E, f64, N, M, A>(x, &f1.q, section, history, false);
+        local(x, &f1.q, section, history, false);
     } else {
         for n in 0..N {
             for i in 0..M {
@@ -220,7 +222,7 @@ where
     }
     let quadratic = section.law.n_state() > 0 && !flows && section.strain.is_linear();
     if curved && accounts && !quadratic {
-        energy[1] = E::absorbed_at(x, &f1.q, section, history);
+        energy[1] = absorbed_at(x, &f1.q, section, history);
         discrete_gradient(x, [&f0.q, &f1.q], energy, &mut mean);
     }
     let between = Between::new(x, step, &f0, &f1);
@@ -242,8 +244,8 @@ where
             *v *= 0.5;
         }
     }
-    let inertia = if mass.1 == MassKind::Consistent && M == 3 && !E::SPRING {
-        coupled(mass.0, step, &between, [&f0, &f1], (rates, rates_end), &mut tangent)
+    let inertia = if mass.1 == MassKind::Consistent && M == 3 && !kernels.spring {
+        coupled(mass.0, step, &between, [&f0, &f1], rates, &mut tangent)
     } else {
         plain(mass.0, mass.1 == MassKind::Lumped, step, &between, &mut tangent)
     };
@@ -253,16 +255,14 @@ where
 /// [`element`] for a solid of revolution. Of the momenta only that along the axis is conserved,
 /// so no turn has to be kept: the force is the mean over the straight line from `u0` to `u1`, and
 /// what makes its work the difference of the energies has no resultant along the axis.
-fn ring<E, const N: usize, const M: usize, const A: usize>(
+fn ring<const N: usize, const M: usize>(
+    kernels: &Kernels<N, M>,
     x: &Nodal<f64, N, 2>,
     section: &Section<N>,
     history: &mut History<'_>,
     mass: (&Mass<f64, N>, MassKind),
     step: &Step<'_, N, M>,
-) -> Answer<N, M>
-where
-    E: Element<N, M, A>,
-{
+) -> Answer<N, M> {
     let accounts = section.law.n_state() == 0 || section.law.work_member().is_some();
     let mut failed = false;
     let mut tangent = blocks::<f64, N, M>();
@@ -271,7 +271,7 @@ where
     let mut respond = |u: &Nodal<f64, N, M>, history: &mut History<'_>, tangent: bool| {
         let wanted = Wanted { nlgeom: step.nlgeom, stressed: false, tangent };
         let mut answer = Local::zero();
-        E::respond(x, u, section, history, wanted, &mut answer);
+        (kernels.respond)(x, u, section, history, wanted, &mut answer);
         failed |= answer.failed;
         answer
     };
@@ -279,7 +279,7 @@ where
     history.clock = passed(clock, 0.0);
     respond(step.u0, history, false);
     if accounts {
-        energy[0] = E::absorbed(x, step.u0, section, history, step.nlgeom);
+        energy[0] = (kernels.absorbed)(x, step.u0, section, history, step.nlgeom);
     }
     for (s, weight) in ALONG {
         history.clock = passed(clock, s);
@@ -297,7 +297,7 @@ where
     history.clock = clock;
     respond(step.u1, history, false);
     if accounts {
-        energy[1] = E::absorbed(x, step.u1, section, history, step.nlgeom);
+        energy[1] = (kernels.absorbed)(x, step.u1, section, history, step.nlgeom);
         let (mut u0, mut u1) = (*step.u0, *step.u1);
         for u in [&mut u0, &mut u1] {
             let mean = u.iter().map(|v| v[1]).sum::<f64>() / N as f64;

@@ -15,9 +15,10 @@
 //! drilling rotations keep the constant matrix of the shape functions exactly.
 // SPDX-License-Identifier: BSD-3-Clause
 
+use super::kernels::Kernels;
 use crate::base::Real;
 use crate::base::small::{Blocks, Nodal, blocks, nodal};
-use crate::elements::{Element, Point, shapes};
+use crate::elements::{Point, shapes};
 
 /// How the mass is distributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,54 +59,6 @@ pub struct Mass<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Mass<T, N> {
-    /// `rho_t` gives the mass per area (of line elements, per length) at a point.
-    #[inline(always)]
-    pub fn new<E, const M: usize, const A: usize>(
-        x: &Nodal<T, N, 2>,
-        points: &[Point<N>],
-        rho_t: impl Fn(&Point<N>) -> f64,
-        sides: &[f64; N],
-        kind: MassKind,
-    ) -> Self
-    where
-        E: Element<N, M, A>,
-    {
-        let o = T::zero();
-        let mut m = Self {
-            nn: [[o; N]; N],
-            ne: [[o; N]; N],
-            ee: [[o; N]; N],
-            rr: [[o; N]; N],
-            s: [[o; 2]; N],
-        };
-        for p in points {
-            let w = E::measure(x, p).scale(rho_t(p));
-            let sides = if M == 3 { E::sides(p.xi) } else { [0.0; N] };
-            for a in 0..N {
-                for b in 0..N {
-                    m.nn[a][b] = w.fma(T::real(p.n[a] * p.n[b]), m.nn[a][b]);
-                    if M == 3 {
-                        m.ne[a][b] = w.fma(T::real(p.n[a] * sides[b]), m.ne[a][b]);
-                        m.ee[a][b] = w.fma(T::real(sides[a] * sides[b]), m.ee[a][b]);
-                    }
-                }
-            }
-        }
-        if M == 3 {
-            for k in 0..N {
-                // The displacement is quadratic on an edge even where the share exceeds one.
-                m.s[k] = shapes::edge_bulge(x, k).map(|v| v.scale(sides[k].min(1.0)));
-            }
-        }
-        if kind != MassKind::Consistent {
-            m.ne = [[o; N]; N];
-        }
-        if kind == MassKind::Lumped {
-            m.lump(points.len());
-        }
-        m
-    }
-
     /// Give the nodes rotary inertia: a line's mass times the square of the cross-section's
     /// radius of gyration.
     pub fn turn_with(&mut self, gyration2: f64) {
@@ -235,6 +188,51 @@ pub fn carriers<const N: usize>(x: &Nodal<f64, N, 2>, light: &[bool; N]) -> [[f6
 }
 
 impl<const N: usize> Mass<f64, N> {
+    /// `rho_t` gives the mass per area (of line elements, per length) at a point.
+    pub fn new<const M: usize>(
+        x: &Nodal<f64, N, 2>,
+        points: &[Point<N>],
+        rho_t: impl Fn(&Point<N>) -> f64,
+        kernels: &Kernels<N, M>,
+        sides: &[f64; N],
+        kind: MassKind,
+    ) -> Self {
+        let o = 0.0;
+        let mut m = Self {
+            nn: [[o; N]; N],
+            ne: [[o; N]; N],
+            ee: [[o; N]; N],
+            rr: [[o; N]; N],
+            s: [[o; 2]; N],
+        };
+        for p in points {
+            let w = (kernels.measure)(x, p) * rho_t(p);
+            let sides = if M == 3 { (kernels.sides)(p.xi) } else { [0.0; N] };
+            for a in 0..N {
+                for b in 0..N {
+                    m.nn[a][b] = w.fma(p.n[a] * p.n[b], m.nn[a][b]);
+                    if M == 3 {
+                        m.ne[a][b] = w.fma(p.n[a] * sides[b], m.ne[a][b]);
+                        m.ee[a][b] = w.fma(sides[a] * sides[b], m.ee[a][b]);
+                    }
+                }
+            }
+        }
+        if M == 3 {
+            for k in 0..N {
+                // The displacement is quadratic on an edge even where the share exceeds one.
+                m.s[k] = shapes::edge_bulge(x, k).map(|v| v * sides[k].min(1.0));
+            }
+        }
+        if kind != MassKind::Consistent {
+            m.ne = [[o; N]; N];
+        }
+        if kind == MassKind::Lumped {
+            m.lump(points.len());
+        }
+        m
+    }
+
     /// Multiply with a factor.
     pub fn scale(&mut self, factor: f64) {
         for part in [&mut self.nn, &mut self.ne, &mut self.ee, &mut self.rr] {

@@ -8,8 +8,8 @@ use super::law_tape::{LawTape, WIDTH, Way};
 use super::local_strain::{LocalStrain, det};
 use super::modes::{condense, linear_modes, relax};
 use super::per_point::PerPoint;
-use crate::base::Real;
 use crate::base::small::{Blocks, Mat, Nodal, blocks, ldlt, ldlt_solve, nodal};
+use crate::base::{Job, Real};
 use crate::elements::fibers::STATIONS;
 use crate::elements::{Element, Operator, Point, Sample};
 use crate::materials::{Clock, Law, Plane, PointState, Response, SolidResponse};
@@ -638,81 +638,85 @@ where
         }
     }
     if let Some(bar) = &bar {
-        finish_dilatation::<E, T, N, M, A>(
-            bar, x, q, alpha, &prepared, section, &mut sums, out, tangent, matrices,
-        );
+        T::apart(FinishDilatation::<E, T, N, M, A> {
+            bar,
+            x,
+            q,
+            alpha,
+            prepared: &prepared,
+            section,
+            sums: &mut sums,
+            out,
+            tangent,
+            matrices,
+        });
     }
     sums
 }
 
-/// Add what the mean dilatation gives once the stress of all points is known.
-#[inline(never)]
-#[allow(clippy::too_many_arguments)]
-fn finish_dilatation<E, T: Real, const N: usize, const M: usize, const A: usize>(
-    bar: &Dilatation<T, N, M>,
-    x: &Nodal<T, N, 2>,
-    q: &Nodal<T, N, M>,
-    alpha: &Nodal<T, A, 2>,
-    prepared: &E::Prepared<T>,
-    section: &Section<N>,
-    sums: &mut Internal<T, N, M>,
-    mut out: Option<&mut Local<T, N, M>>,
-    tangent: bool,
-    matrices: bool,
-) where
-    E: Element<N, M, A>,
-{
-    if let Some(out) = out.as_deref_mut() {
-        bar.finish_force(&mut out.force);
-        if tangent {
-            bar.finish_stiffness(&mut out.stiffness);
-        }
-    }
-    bar.finish_modes::<A>(sums);
-    if section.strain.is_linear() || !matrices {
-        return;
-    }
-    for point in &section.points {
-        let s = E::sample(x, prepared, point);
-        let a = bar.curvature(&gradient(&s, q, alpha), s.weight);
-        if tangent && let Some(out) = out.as_deref_mut() {
-            let mut gamma = T::zero();
-            if E::Op::<T>::HOOP {
-                gamma = bar.hoop_curvature(s.op.drill(q), s.weight);
-            }
-            s.op.add_stiffness(&a, gamma, &mut out.stiffness);
-        }
-        for m in 0..A {
-            for i in 0..2 {
-                let r = 2 * m + i;
-                let mut t = [T::zero(); 4];
-                for c in 0..4 {
-                    t[c] = s.modes[m][0].fma(a[2 * i][c], s.modes[m][1] * a[2 * i + 1][c]);
-                }
-                for (c, v) in by_modes(&s.modes, &t).into_iter().enumerate().take(r + 1) {
-                    sums.stiffness[r][c] += v;
-                }
-                s.op.add_force(&t, T::zero(), &mut sums.coupling[r]);
-            }
-        }
-    }
-}
-
-/// Local force and stiffness of an element with local dofs `q`.
-#[inline(always)]
-pub fn local<E, T: Real, const N: usize, const M: usize, const A: usize>(
-    x: &Nodal<T, N, 2>,
-    q: &Nodal<T, N, M>,
-    section: &Section<N>,
-    history: &mut History<'_>,
-    tangent: bool,
-) -> Local<T, N, M>
+/// Adds what the mean dilatation gives once the stress of all points is known.
+struct FinishDilatation<'a, E, T: Real, const N: usize, const M: usize, const A: usize>
 where
     E: Element<N, M, A>,
 {
-    let mut out = Local::zero();
-    single_into::<E, T, N, M, A>(x, q, section, history, tangent, &mut out);
-    out
+    bar: &'a Dilatation<T, N, M>,
+    x: &'a Nodal<T, N, 2>,
+    q: &'a Nodal<T, N, M>,
+    alpha: &'a Nodal<T, A, 2>,
+    prepared: &'a E::Prepared<T>,
+    section: &'a Section<N>,
+    sums: &'a mut Internal<T, N, M>,
+    out: Option<&'a mut Local<T, N, M>>,
+    tangent: bool,
+    matrices: bool,
+}
+
+impl<E, T: Real, const N: usize, const M: usize, const A: usize> Job
+    for FinishDilatation<'_, E, T, N, M, A>
+where
+    E: Element<N, M, A>,
+{
+    type Output = ();
+    #[inline(always)]
+    fn run(mut self) {
+        let (bar, section, sums) = (self.bar, self.section, self.sums);
+        if let Some(out) = self.out.as_deref_mut() {
+            bar.finish_force(&mut out.force);
+            if self.tangent {
+                bar.finish_stiffness(&mut out.stiffness);
+            }
+        }
+        bar.finish_modes::<A>(sums);
+        if section.strain.is_linear() || !self.matrices {
+            return;
+        }
+        for point in &section.points {
+            let s = E::sample(self.x, self.prepared, point);
+            let a = bar.curvature(&gradient(&s, self.q, self.alpha), s.weight);
+            if self.tangent
+                && let Some(out) = self.out.as_deref_mut()
+            {
+                let mut gamma = T::zero();
+                if E::Op::<T>::HOOP {
+                    gamma = bar.hoop_curvature(s.op.drill(self.q), s.weight);
+                }
+                s.op.add_stiffness(&a, gamma, &mut out.stiffness);
+            }
+            for m in 0..A {
+                for i in 0..2 {
+                    let r = 2 * m + i;
+                    let mut t = [T::zero(); 4];
+                    for c in 0..4 {
+                        t[c] = s.modes[m][0].fma(a[2 * i][c], s.modes[m][1] * a[2 * i + 1][c]);
+                    }
+                    for (c, v) in by_modes(&s.modes, &t).into_iter().enumerate().take(r + 1) {
+                        sums.stiffness[r][c] += v;
+                    }
+                    s.op.add_force(&t, T::zero(), &mut sums.coupling[r]);
+                }
+            }
+        }
+    }
 }
 
 /// [`Element::law_into`] out of line: all that evaluates single elements shares one instance of
@@ -731,7 +735,8 @@ pub fn single_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
     E::law_into(x, q, section, history, tangent && T::STIFFNESS, out);
 }
 
-/// [`local`] into a zero `out`: a matrix of packs is too large to be moved about.
+/// Local force and stiffness of an element with local dofs `q`, into a zero `out`: a matrix of packs is
+/// too large to be moved about.
 ///
 /// Internal modes are found by a damped Newton iteration that starts from the stored ones and
 /// are stored again; laws that are linear take one pass.

@@ -17,6 +17,8 @@ use crate::materials::PointState;
 pub const WIDTH: usize = 4;
 /// A number with them.
 pub type Number = Dual<WIDTH, true>;
+/// A number with its derivative along the weights of the forces.
+pub type Along = Dual<1, true>;
 
 /// Most components of a strain.
 const STRAINS: usize = 4;

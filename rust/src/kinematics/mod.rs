@@ -10,6 +10,7 @@ pub mod hencky;
 pub mod hourglass;
 pub mod inertia;
 pub mod integrate;
+pub mod kernels;
 pub mod law_tape;
 pub mod local_strain;
 mod modes;

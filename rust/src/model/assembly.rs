@@ -6,17 +6,19 @@ use super::chunk_of::ChunkOf;
 use super::dofs::Dofs;
 use super::scatter::Sink;
 use crate::base::small::{Blocks, Nodal};
-use crate::base::{Kernel, Real};
+use crate::base::{Kernel, Lanes, Real, dispatch};
 use crate::elements::Element;
 use crate::elements::element::Wanted;
-use crate::kinematics::integrate::{History, Local};
+use crate::kinematics::integrate::{History, Local, Section};
 use crate::kinematics::per_point::PerPoint;
+use std::marker::PhantomData;
 
 /// The assembly of a chunk, to be run with the processor's widest numbers.
-pub(super) struct Assemble<'a, E, const N: usize, const M: usize, const A: usize> {
-    pub chunk: &'a mut ChunkOf<E, N, M, A>,
-    pub context: &'a Context<'a>,
-    pub sink: &'a Sink<'a>,
+struct Assemble<'a, E, const N: usize, const M: usize, const A: usize> {
+    chunk: &'a mut ChunkOf<N, M>,
+    context: &'a Context<'a>,
+    sink: &'a Sink<'a>,
+    element: PhantomData<E>,
 }
 
 impl<E, const N: usize, const M: usize, const A: usize> Kernel for Assemble<'_, E, N, M, A>
@@ -26,20 +28,59 @@ where
     type Output = Vec<usize>;
     #[inline(always)]
     fn run<T: Real>(self) -> Vec<usize> {
-        self.chunk.run::<T>(self.context, self.sink)
+        // Plain numbers share one instance for all element types of these sizes.
+        if const { T::LANES == 1 } {
+            return self.chunk.one_by_one(self.context, self.sink);
+        }
+        self.chunk.run::<T>(
+            self.context,
+            self.sink,
+            #[inline(always)]
+            |x, u, section, history, wanted, out| E::respond(x, u, section, history, wanted, out),
+        )
     }
 }
 
-impl<E, const N: usize, const M: usize, const A: usize> ChunkOf<E, N, M, A>
-where
-    E: Element<N, M, A>,
-{
+impl<const N: usize, const M: usize> ChunkOf<N, M> {
+    /// Assemble elements of type `E` with such numbers; those that failed.
+    pub(super) fn batches<E, const A: usize>(
+        &mut self,
+        lanes: Lanes,
+        context: &Context<'_>,
+        sink: &Sink<'_>,
+    ) -> Vec<usize>
+    where
+        E: Element<N, M, A>,
+    {
+        dispatch(lanes, Assemble { chunk: self, context, sink, element: PhantomData::<E> })
+    }
+
+    /// Assemble with plain numbers.
+    #[inline(never)]
+    fn one_by_one(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize> {
+        let respond = self.kernels.respond;
+        self.run::<f64>(context, sink, respond)
+    }
+
     #[inline(always)]
-    fn run<T: Real>(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize> {
+    fn run<T: Real>(
+        &mut self,
+        context: &Context<'_>,
+        sink: &Sink<'_>,
+        respond: impl Fn(
+            &Nodal<T, N, 2>,
+            &Nodal<T, N, M>,
+            &Section<N>,
+            &mut History<'_>,
+            Wanted,
+            &mut Local<T, N, M>,
+        ),
+    ) -> Vec<usize> {
         let mut failed = Vec::new();
         let n = self.nodes.len();
         let shared = self.shared.clone();
         let members = usize::from(shared.section.law.n_state() > 0);
+        let modes = 2 * self.kernels.modes;
         let section =
             if context.stressed { &shared.stressed } else { shared.section(context.nlgeom) };
         let wanted =
@@ -49,7 +90,7 @@ where
             let mut history = History {
                 old: &self.old[e * members..],
                 new: &mut self.new[e * members..],
-                alpha: &mut self.alpha[e.min(2 * A * self.stride)..],
+                alpha: &mut self.alpha[e.min(modes * self.stride)..],
                 initial: if self.initial.is_empty() { &[] } else { &self.initial[e..] },
                 stride: self.stride,
                 clock: context.clock,
@@ -63,7 +104,7 @@ where
                 tape: None,
             };
             let mut answer = Local::zero();
-            E::respond(&x, &u, section, &mut history, wanted, &mut answer);
+            respond(&x, &u, section, &mut history, wanted, &mut answer);
             let count = T::LANES.min(n - e);
             if T::any(answer.failed) {
                 for l in 0..count {

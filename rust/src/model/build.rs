@@ -6,7 +6,8 @@ use super::chunk_of::ChunkOf;
 use super::dofs::Dofs;
 use super::locality;
 use super::registry;
-use crate::elements::{Element, Ring};
+use crate::base::small::Mat;
+use crate::elements::{Element, Point, Ring};
 use crate::kinematics::integrate::Section;
 use crate::kinematics::local_strain::LocalStrain;
 use crate::materials::by_temperature::LawTable;
@@ -84,7 +85,7 @@ pub fn build(
     x: &[[f64; 2]],
     dofs: &Dofs,
 ) -> Result<(Block, Vec<Box<dyn Chunk>>), String> {
-    fn of<E, const N: usize, const M: usize, const A: usize>(
+    fn of<E, Code, const N: usize, const M: usize, const A: usize>(
         index: usize,
         input: &BlockInput,
         x: &[[f64; 2]],
@@ -92,91 +93,34 @@ pub fn build(
     ) -> Result<(Block, Vec<Box<dyn Chunk>>), String>
     where
         E: Element<N, M, A>,
+        Code: Element<N, M, A>,
     {
-        let state = if E::LINE { State::Line } else { State::Plane(input.plane) };
-        let mut law = Law::new(&input.law, &input.parameters, state)?;
-        if LocalStrain::new(&input.local_strain)? != LocalStrain::Logarithmic {
-            law = law.linearized();
-        }
-        if E::LINE && E::MEMORY > 0 && law.n_state() > 0 && input.fibers.is_empty() {
-            return Err(format!("{} with {} needs the fibers of its profile", E::NAME, input.law));
-        }
-        if input.options.mean_dilatation && (!E::MEAN_DILATATION || input.plane == Plane::Stress) {
-            return Err(format!(
-                "mean dilatation is for quadrilaterals without incompatible modes in plane strain, \
-                 not for {} in plane {}",
-                E::NAME,
-                if input.plane == Plane::Stress { "stress" } else { "strain" },
-            ));
-        }
-        let section = Section {
+        let element = ElementType {
+            name: E::NAME,
+            line: E::LINE,
+            memory: E::MEMORY > 0,
+            mean_dilatation: E::MEAN_DILATATION,
             points: E::points(&E::rule()),
-            strain: if E::LINE {
-                LocalStrain::Linear
-            } else {
-                LocalStrain::new(&input.local_strain)?
-            },
-            thickness: input.thickness,
-            parameter: match input.options.beta0 {
-                Some(beta0) => E::parameter_of(beta0)
-                    .ok_or_else(|| format!("{} has no parameter beta0", E::NAME))?,
-                None => E::parameter(&law.moduli()),
-            },
-            law: law.clone(),
-            plane: input.plane,
-            ring: input.ring,
-            profile: input.profile,
-            table: input.table.clone(),
-            fibers: input.fibers.clone(),
-            mean_dilatation: input.options.mean_dilatation,
-            finite: true,
+            mass_points: E::points(&E::mass_rule()),
+            parameter: E::parameter,
+            parameter_of: E::parameter_of,
+            chunk: ChunkOf::<N, M>::new::<Code, A>,
         };
-        for nodal in [&input.nodal_thickness, &input.nodal_density, &input.sides] {
-            if !nodal.is_empty() && nodal.len() != input.nodes.len() {
-                return Err("values of the nodes do not fit the elements".into());
-            }
-        }
-        let table = match input.by_temperature.as_slice() {
-            [] => None,
-            rows => Some(LawTable::new(&input.law, state, rows)?),
-        };
-        let shape = section.points.iter().flat_map(|p| p.n).collect();
-        let mass_points = E::points(&E::mass_rule());
-        let (linear, stressed) = (section.linearized(), section.stressed());
-        let shared = BlockData {
-            block: index,
-            section,
-            linear,
-            stressed,
-            rho: input.rho,
-            table,
-            weighted: input.options.beta0.is_some(),
-            nodal_thickness: input.nodal_thickness.clone(),
-            sides: input.sides.clone(),
-            nodal_density: input.nodal_density.clone(),
-            mass_points,
-        };
-        let shared = Arc::new(shared);
-        let nodes: Vec<[u32; N]> = input.nodes.as_chunks::<N>().0.to_vec();
-        let order = locality::order(x, &input.nodes, N, CHUNK);
-        let chunks = order.chunks(CHUNK).map(|elements| {
-            let chunk = ChunkOf::<E, N, M, A>::new(&shared, elements, &nodes, dofs);
-            Box::new(chunk) as Box<dyn Chunk>
-        });
-        let facts = registry::find(E::NAME)?;
-        Ok((Block { facts, n_elements: nodes.len(), law, shape }, chunks.collect()))
+        build_of(index, input, x, dofs, element)
     }
     macro_rules! pick {
         ($e:ty, $n:literal, $m:literal, $a:literal) => {
             if input.element == <$e as Element<$n, $m, $a>>::NAME {
-                return of::<$e, $n, $m, $a>(index, input, x, dofs);
+                type Code = <$e as Element<$n, $m, $a>>::Code;
+                return of::<$e, Code, $n, $m, $a>(index, input, x, dofs);
             }
         };
     }
     macro_rules! turn {
         ($e:ty, $n:literal, $a:literal) => {
             if input.element == <$e as Element<$n, 2, $a>>::NAME {
-                return of::<Ring<$e>, $n, 2, $a>(index, input, x, dofs);
+                type Code = Ring<<$e as Element<$n, 2, $a>>::Code>;
+                return of::<Ring<$e>, Code, $n, 2, $a>(index, input, x, dofs);
             }
         };
     }
@@ -186,6 +130,100 @@ pub fn build(
     }
     for_each_element!(pick);
     Err(format!("no element named {:?}", input.element))
+}
+
+/// What the build of a block asks of an element type.
+struct ElementType<const N: usize, const M: usize> {
+    name: &'static str,
+    line: bool,
+    memory: bool,
+    mean_dilatation: bool,
+    points: Vec<Point<N>>,
+    mass_points: Vec<Point<N>>,
+    parameter: fn(&Mat<f64, 3>) -> f64,
+    parameter_of: fn(f64) -> Option<f64>,
+    chunk: fn(&Arc<BlockData<N>>, &[u32], &[[u32; N]], &Dofs) -> ChunkOf<N, M>,
+}
+
+/// The chunks of a block of an element type.
+fn build_of<const N: usize, const M: usize>(
+    index: usize,
+    input: &BlockInput,
+    x: &[[f64; 2]],
+    dofs: &Dofs,
+    element: ElementType<N, M>,
+) -> Result<(Block, Vec<Box<dyn Chunk>>), String> {
+    let state = if element.line { State::Line } else { State::Plane(input.plane) };
+    let mut law = Law::new(&input.law, &input.parameters, state)?;
+    if LocalStrain::new(&input.local_strain)? != LocalStrain::Logarithmic {
+        law = law.linearized();
+    }
+    if element.line && element.memory && law.n_state() > 0 && input.fibers.is_empty() {
+        return Err(format!("{} with {} needs the fibers of its profile", element.name, input.law));
+    }
+    if input.options.mean_dilatation && (!element.mean_dilatation || input.plane == Plane::Stress) {
+        return Err(format!(
+            "mean dilatation is for quadrilaterals without incompatible modes in plane strain, \
+             not for {} in plane {}",
+            element.name,
+            if input.plane == Plane::Stress { "stress" } else { "strain" },
+        ));
+    }
+    let section = Section {
+        points: element.points,
+        strain: if element.line {
+            LocalStrain::Linear
+        } else {
+            LocalStrain::new(&input.local_strain)?
+        },
+        thickness: input.thickness,
+        parameter: match input.options.beta0 {
+            Some(beta0) => (element.parameter_of)(beta0)
+                .ok_or_else(|| format!("{} has no parameter beta0", element.name))?,
+            None => (element.parameter)(&law.moduli()),
+        },
+        law: law.clone(),
+        plane: input.plane,
+        ring: input.ring,
+        profile: input.profile,
+        table: input.table.clone(),
+        fibers: input.fibers.clone(),
+        mean_dilatation: input.options.mean_dilatation,
+        finite: true,
+    };
+    for nodal in [&input.nodal_thickness, &input.nodal_density, &input.sides] {
+        if !nodal.is_empty() && nodal.len() != input.nodes.len() {
+            return Err("values of the nodes do not fit the elements".into());
+        }
+    }
+    let table = match input.by_temperature.as_slice() {
+        [] => None,
+        rows => Some(LawTable::new(&input.law, state, rows)?),
+    };
+    let shape = section.points.iter().flat_map(|p| p.n).collect();
+    let (linear, stressed) = (section.linearized(), section.stressed());
+    let shared = BlockData {
+        block: index,
+        section,
+        linear,
+        stressed,
+        rho: input.rho,
+        table,
+        weighted: input.options.beta0.is_some(),
+        nodal_thickness: input.nodal_thickness.clone(),
+        sides: input.sides.clone(),
+        nodal_density: input.nodal_density.clone(),
+        mass_points: element.mass_points,
+    };
+    let shared = Arc::new(shared);
+    let nodes: Vec<[u32; N]> = input.nodes.as_chunks::<N>().0.to_vec();
+    let order = locality::order(x, &input.nodes, N, CHUNK);
+    let chunks = order.chunks(CHUNK).map(|elements| {
+        let chunk = (element.chunk)(&shared, elements, &nodes, dofs);
+        Box::new(chunk) as Box<dyn Chunk>
+    });
+    let facts = registry::find(element.name)?;
+    Ok((Block { facts, n_elements: nodes.len(), law, shape }, chunks.collect()))
 }
 
 /// Greedy coloring: chunks of a color share no node.

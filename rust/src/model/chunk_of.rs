@@ -1,24 +1,27 @@
-//! The chunk of an element type: nodes, history and state, evaluated in batches.
+//! The chunk of an element type: nodes, history and state, evaluated in batches. All but the batches
+//! goes through the functions of [`Kernels`], and is compiled once for each number of nodes and dofs.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::assembly::Assemble;
 use super::chunk::{Chunk, Context, PARTS, Shared};
 use super::dofs::Dofs;
 use super::dynamics::{Between, BodyLoad, Momenta, Motion};
 use super::scatter::Sink;
 use super::sensitivity::{Gradients, Weights};
 use crate::base::small::Nodal;
-use crate::base::{Lanes, MAX_LANES, Real, dispatch};
+use crate::base::{Lanes, MAX_LANES, Real};
 use crate::elements::Element;
 use crate::kinematics::inertia::MassKind;
+use crate::kinematics::kernels::Kernels;
 use crate::kinematics::per_point::{PerPoint, PointLaws};
-use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// Histories are padded so that every batch can load whole lanes.
 const PAD: usize = MAX_LANES;
 
-pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
+pub struct ChunkOf<const N: usize, const M: usize> {
+    pub(super) kernels: Kernels<N, M>,
+    /// [`ChunkOf::batches`] of the element type.
+    batches: Batches<N, M>,
     pub(super) shared: Arc<Shared<N>>,
     /// Index of each element in the block.
     pub(super) elements: Vec<u32>,
@@ -53,25 +56,36 @@ pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
     /// Temperatures by element and point, and the laws there; none where the law has no table.
     temperatures: Vec<f64>,
     pub(super) laws: Option<PointLaws>,
-    element: PhantomData<E>,
 }
 
-impl<E, const N: usize, const M: usize, const A: usize> ChunkOf<E, N, M, A>
-where
-    E: Element<N, M, A>,
-{
-    /// Chunk of the `elements` of a block with the given nodes.
-    pub fn new(
+impl<const N: usize, const M: usize> ChunkOf<N, M> {
+    /// Chunk of the `elements` of a block, of type `E`, with the given nodes.
+    pub fn new<E, const A: usize>(
+        shared: &Arc<Shared<N>>,
+        elements: &[u32],
+        all_nodes: &[[u32; N]],
+        dofs: &Dofs,
+    ) -> Self
+    where
+        E: Element<N, M, A>,
+    {
+        let kernels = Kernels::of::<E, A>();
+        Self::with(kernels, Self::batches::<E, A>, shared, elements, all_nodes, dofs)
+    }
+
+    fn with(
+        kernels: Kernels<N, M>,
+        batches: Batches<N, M>,
         shared: &Arc<Shared<N>>,
         elements: &[u32],
         all_nodes: &[[u32; N]],
         dofs: &Dofs,
     ) -> Self {
         let nodes: Vec<[u32; N]> = elements.iter().map(|&e| all_nodes[e as usize]).collect();
-        let stride = nodes.len().div_ceil(PAD) * PAD;
+        let (stride, modes) = (nodes.len().div_ceil(PAD) * PAD, kernels.modes);
         let section = &shared.section;
         let members = section.law.n_state();
-        let memory = if members > 0 { E::MEMORY } else { 0 };
+        let memory = if members > 0 { kernels.memory } else { 0 };
         let state = (section.n_histories() * members + memory) * stride;
         let rates = if M == 3 { 2 * N * nodes.len() } else { 0 };
         let mut slots = Vec::with_capacity(nodes.len() * N * (N + 1) / 2);
@@ -103,16 +117,16 @@ where
             }
         }
         let mut sides = Vec::new();
-        if !shared.sides.is_empty() || (!nodal_thickness.is_empty() && E::EDGE != 0.0) {
-            sides.resize(N * stride, E::EDGE);
+        if !shared.sides.is_empty() || (!nodal_thickness.is_empty() && kernels.edge != 0.0) {
+            sides.resize(N * stride, kernels.edge);
             let shares = of_nodes(&shared.sides);
             for e in 0..nodes.len() {
-                let share = shares.get(e).unwrap_or(&[E::ALPHA_B; N]);
+                let share = shares.get(e).copied().unwrap_or([kernels.alpha_b; N]);
                 let thick = nodal_thickness.get(e).unwrap_or(&[1.0; N]);
                 let mean = thick.iter().sum::<f64>() / N as f64;
-                for (a, share) in share.iter().enumerate() {
+                for (a, &share) in share.iter().enumerate() {
                     let here = 0.5 * (thick[a] + thick[(a + 1) % N]);
-                    sides[a * stride + e] = E::edge(*share, here / mean);
+                    sides[a * stride + e] = (kernels.edge_of)(share, here / mean);
                 }
             }
         }
@@ -124,8 +138,8 @@ where
             stride,
             old: vec![0.0; state],
             new: vec![0.0; state],
-            alpha_old: vec![0.0; 2 * A * stride],
-            alpha: vec![0.0; 2 * A * stride],
+            alpha_old: vec![0.0; 2 * modes * stride],
+            alpha: vec![0.0; 2 * modes * stride],
             evaluated: false,
             rates_old: vec![0.0; rates],
             rates: vec![0.0; rates],
@@ -139,7 +153,8 @@ where
             nodal_density: of_nodes(&shared.nodal_density),
             temperatures: Vec::new(),
             laws: None,
-            element: PhantomData,
+            kernels,
+            batches,
         }
     }
 
@@ -151,7 +166,7 @@ where
     /// Share [`Element::ALPHA_B`] of each edge of the element `e` of the chunk.
     pub(super) fn shares(&self, e: usize) -> [f64; N] {
         let rows = self.shared.sides.as_chunks::<N>().0;
-        rows.get(self.elements[e] as usize).copied().unwrap_or([E::ALPHA_B; N])
+        rows.get(self.elements[e] as usize).copied().unwrap_or([self.kernels.alpha_b; N])
     }
 
     /// What the element `e` of the chunk has of its own.
@@ -163,8 +178,9 @@ where
     fn temper(&mut self) -> Result<(), String> {
         let shared = self.shared.clone();
         let Some(table) = &shared.table else { return Ok(()) };
+        let parameter = self.kernels.parameter;
         let of = |moduli: &crate::base::small::Mat<f64, 3>| {
-            if shared.weighted { shared.section.parameter } else { E::parameter(moduli) }
+            if shared.weighted { shared.section.parameter } else { parameter(moduli) }
         };
         let n_points = shared.section.points.len();
         self.laws = Some(PointLaws::new(table, &self.temperatures, n_points, of)?);
@@ -226,15 +242,16 @@ where
     }
 }
 
-impl<E, const N: usize, const M: usize, const A: usize> Chunk for ChunkOf<E, N, M, A>
-where
-    E: Element<N, M, A>,
-{
+/// Assembly in batches.
+type Batches<const N: usize, const M: usize> =
+    fn(&mut ChunkOf<N, M>, Lanes, &Context<'_>, &Sink<'_>) -> Vec<usize>;
+
+impl<const N: usize, const M: usize> Chunk for ChunkOf<N, M> {
     fn assemble(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize> {
         self.begin_trial();
         // Elements with laws of their own are evaluated one by one.
         let lanes = if self.laws.is_some() { Lanes::Scalar } else { context.lanes };
-        dispatch(lanes, Assemble { chunk: self, context, sink })
+        (self.batches)(self, lanes, context, sink)
     }
     fn differentiate(&self, context: &Context<'_>, weights: &Weights<'_>) -> Gradients {
         ChunkOf::differentiate(self, context, weights)

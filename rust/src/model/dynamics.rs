@@ -5,7 +5,7 @@ use super::chunk::Context;
 use super::chunk_of::ChunkOf;
 use super::scatter::Sink;
 use crate::base::small::{Nodal, symmetric_times};
-use crate::elements::{Element, Point};
+use crate::elements::Point;
 use crate::kinematics::conserving::{self, Step};
 use crate::kinematics::inertia::{Mass, MassKind, Spin, bulge_rates, consistent};
 use crate::kinematics::integrate::History;
@@ -57,10 +57,7 @@ fn interpolate<const N: usize>(p: &Point<N>, nodal: &[f64; N]) -> f64 {
     p.n.iter().zip(nodal).map(|(n, v)| n * v).sum()
 }
 
-impl<E, const N: usize, const M: usize, const A: usize> ChunkOf<E, N, M, A>
-where
-    E: Element<N, M, A>,
-{
+impl<const N: usize, const M: usize> ChunkOf<N, M> {
     fn of_dofs(&self, e: usize, values: &[f64], context: &Context<'_>) -> Nodal<f64, N, M> {
         let mut out = [[0.0; M]; N];
         for a in 0..N {
@@ -88,8 +85,8 @@ where
             let rho = self.nodal_density.get(e).map_or(s.rho, |nodal| interpolate(p, nodal));
             rho * self.thickness(e, p)
         };
-        let mut mass = Mass::new::<E, M, A>(x, &s.mass_points, rho_t, &self.shares(e), kind);
-        if E::LINE && M == 3 && s.section.thickness > 0.0 {
+        let mut mass = Mass::new(x, &s.mass_points, rho_t, &self.kernels, &self.shares(e), kind);
+        if self.kernels.line && M == 3 && s.section.thickness > 0.0 {
             mass.turn_with(s.section.profile[1] / s.section.thickness);
         }
         if let Some(massless) = self.massless.get(e) {
@@ -102,8 +99,8 @@ where
     }
 
     /// Whether bulges of the edges couple with the nodes.
-    fn coupled(kind: MassKind) -> bool {
-        kind == MassKind::Consistent && M == 3 && !E::SPRING
+    fn coupled(&self, kind: MassKind) -> bool {
+        kind == MassKind::Consistent && M == 3 && !self.kernels.spring
     }
 
     pub(super) fn add_inertia(&self, context: &Context<'_>, motion: &Motion<'_>, sink: &Sink<'_>) {
@@ -111,7 +108,7 @@ where
             let (x, u) = self.gather::<f64>(e, context);
             let (mass, kind) = self.mass(e, &x, motion.kind);
             let a = self.of_dofs(e, motion.a, context);
-            let (f, k) = if Self::coupled(kind) {
+            let (f, k) = if self.coupled(kind) {
                 let v = self.of_dofs(e, motion.v, context);
                 consistent(&mass, &x, &u, &v, &a, motion.weights)
             } else {
@@ -140,13 +137,13 @@ where
             let (x, mut u) = self.gather::<f64>(e, context);
             let (mass, coupled) = if let Some(kind) = load.kind {
                 let (mass, kind) = self.mass(e, &x, kind);
-                (mass, Self::coupled(kind))
+                (mass, self.coupled(kind))
             } else {
                 let (points, kind) = (&self.shared.mass_points, MassKind::Consistent);
                 let sides = self.shares(e);
                 let thickness = |p: &Point<N>| self.thickness(e, p);
-                let volume = Mass::new::<E, M, A>(&x, points, thickness, &sides, kind);
-                (volume, Self::coupled(kind))
+                let volume = Mass::new(&x, points, thickness, &self.kernels, &sides, kind);
+                (volume, self.coupled(kind))
             };
             let mut secant = None;
             if !load.start.is_empty() {
@@ -160,7 +157,7 @@ where
                     *to = 0.5 * (*to + from);
                 }
             }
-            let field = if E::RING { load.field.about_axis() } else { load.field };
+            let field = if self.kernels.ring { load.field.about_axis() } else { load.field };
             let (middle, mut k) = body::force(&mass, coupled, &x, &u, field, context.tangent);
             let f = secant.unwrap_or(middle);
             self.scatter_force(e, 1, &f, context.dofs, sink);
@@ -186,6 +183,7 @@ where
         let mut failed = Vec::new();
         let shared = self.shared.clone();
         let members = usize::from(shared.section.law.n_state() > 0);
+        let modes = 2 * self.kernels.modes;
         for e in 0..self.nodes.len() {
             let (x, u1) = self.gather::<f64>(e, context);
             let (mass, kind) = self.mass(e, &x, between.kind);
@@ -202,7 +200,7 @@ where
             let mut history = History {
                 old: &self.old[e * members..],
                 new: &mut self.new[e * members..],
-                alpha: &mut self.alpha[e.min(2 * A * stride)..],
+                alpha: &mut self.alpha[e.min(modes * stride)..],
                 initial: if self.initial.is_empty() { &[] } else { &self.initial[e..] },
                 stride,
                 clock: context.clock,
@@ -220,17 +218,17 @@ where
                 v0: &v0,
                 u1: &u1,
                 dt: between.dt,
-                nlgeom: context.nlgeom && E::TURNS,
+                nlgeom: context.nlgeom && self.kernels.turns,
                 tangent: context.tangent,
             };
-            let answer = conserving::element::<E, N, M, A>(
+            let answer = conserving::element(
+                &self.kernels,
                 &x,
                 &shared.section,
                 &mut history,
                 (&mass, kind),
                 &step,
-                &rates,
-                &mut rates_end,
+                (&rates, &mut rates_end),
             );
             if M == 3 {
                 self.rates[2 * N * e..2 * N * (e + 1)].copy_from_slice(rates_end.as_flattened());
@@ -277,7 +275,7 @@ where
             let (x, u) = self.gather::<f64>(e, context);
             let (mass, kind) = self.mass(e, &x, kind);
             let v = self.of_dofs(e, v, context);
-            let coupled = Self::coupled(kind);
+            let coupled = self.coupled(kind);
             let mut y = [[0.0; 2]; N];
             let mut rate = [[0.0; 2]; N];
             if coupled {

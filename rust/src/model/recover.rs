@@ -3,7 +3,6 @@
 
 use super::chunk::Context;
 use super::chunk_of::ChunkOf;
-use crate::elements::Element;
 use crate::elements::element::Wanted;
 use crate::kinematics::corotation::Frame;
 use crate::kinematics::integrate::{History, Local};
@@ -146,29 +145,27 @@ fn turn(t: [f64; 3], c: f64, s: f64) -> [f64; 3] {
 }
 
 /// Fields of a chunk, in its own order of elements.
-pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
-    chunk: &ChunkOf<E, N, M, A>,
+pub(super) fn chunk<const N: usize, const M: usize>(
+    chunk: &ChunkOf<N, M>,
     context: &Context<'_>,
     out: &mut Fields,
-) where
-    E: Element<N, M, A>,
-{
-    use crate::elements::Operator;
+) {
+    let kernels = &chunk.kernels;
     let section = chunk.shared.section(context.nlgeom);
     let members = section.law.n_state();
     let n_points = section.points.len();
     let memory = members * section.n_histories();
-    let kept = memory + if members > 0 { E::MEMORY } else { 0 };
+    let kept = memory + if members > 0 { kernels.memory } else { 0 };
     let mut new = vec![0.0; kept];
     if !chunk.initial_from(0).is_empty() {
         out.heat = vec![0.0; 5 * out.volume.len()];
     }
-    if chunk.per_point(0).laws.is_some() && !E::LINE {
+    if chunk.per_point(0).laws.is_some() && !kernels.line {
         out.stabilized = vec![0.0; 6 * out.rotation.len()];
     }
     for e in 0..chunk.nodes.len() {
         let (x, u) = chunk.gather::<f64>(e, context);
-        let frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);
+        let frame = Frame::new(&x, &u, context.nlgeom && kernels.turns);
         let stride = chunk.stride;
         let own = chunk.per_point(e);
         let rows = 4 * n_points;
@@ -177,7 +174,8 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             from => (0..rows).map(|m| from[m * stride]).collect(),
         };
         let old: Vec<f64> = (0..kept).map(|m| chunk.old[m * stride + e]).collect();
-        let mut alpha: Vec<f64> = (0..2 * A).map(|m| chunk.alpha[m * stride + e]).collect();
+        let mut alpha: Vec<f64> =
+            (0..2 * kernels.modes).map(|m| chunk.alpha[m * stride + e]).collect();
         // The internal modes and the force that belong to these nodal dofs.
         let mut history = History {
             old: &old,
@@ -191,16 +189,16 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
         };
         let wanted = Wanted { nlgeom: context.nlgeom, stressed: false, tangent: false };
         let mut answer = Local::zero();
-        E::respond(&x, &u, section, &mut history, wanted, &mut answer);
+        (kernels.respond)(&x, &u, section, &mut history, wanted, &mut answer);
         let forces = answer.force;
         out.forces[e * N * M..(e + 1) * N * M].copy_from_slice(forces.as_flattened());
-        if E::LINE {
-            let found = E::resultants(&x, &frame.q, section, &mut history);
+        if kernels.line {
+            let found = (kernels.resultants)(&x, &frame.q, section, &mut history);
             out.fibers.extend_from_slice(found.fibers.as_flattened());
             if let Some(heat) = out.heat.get_mut(5 * e) {
                 *heat = found.stress;
             }
-            let volume = section.thickness * E::measure(&x, &section.points[0]);
+            let volume = section.thickness * (kernels.measure)(&x, &section.points[0]);
             let mut position = [0.0; 2];
             for a in 0..N {
                 for i in 0..2 {
@@ -228,12 +226,8 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             out.rotation[e] = frame.angle();
             continue;
         }
-        let mut modes = [[0.0; 2]; A];
-        for m in 0..A {
-            modes[m] = [alpha[2 * m], alpha[2 * m + 1]];
-        }
         let parameter = own.parameter::<f64, N>(section);
-        let kinematics = E::kinematics(&x, &u, &modes, section, &own, context.nlgeom);
+        let kinematics = (kernels.kinematics)(&x, &u, &alpha, section, &own, context.nlgeom);
         for (p, (point, at)) in section.points.iter().zip(&kinematics).enumerate() {
             let (law, thickness) =
                 (own.law::<f64, N>(p, section), own.thickness::<f64, N>(p, section));
@@ -250,7 +244,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 clock: context.clock,
             };
             let (mut stress, mut strain_zz, mut stress_zz, mut energy);
-            if E::RING {
+            if kernels.ring {
                 strain_zz = at.strain[2];
                 let solid = [strain[0], strain[1], strain[2], strain_zz - offset(3)];
                 let all = law.update_solid(solid, &mut state).stress;
@@ -264,14 +258,14 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             }
             let state = &new[range];
             let normal = stress_zz;
-            let in_strain = section.plane == Plane::Strain && !E::RING;
+            let in_strain = section.plane == Plane::Strain && !kernels.ring;
             if section.plane == Plane::Stress {
                 strain_zz += offset(3);
             } else if in_strain {
                 energy += law.initial_energy(stress, stress_zz, offset(3));
                 stress_zz += offset(3);
             }
-            let own_stress = if E::RING {
+            let own_stress = if kernels.ring {
                 law.without_normal_strain(stress, strain_zz - offset(3))
             } else {
                 stress
@@ -284,7 +278,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 for (row, v) in heat.iter_mut().zip(stress) {
                     *row = v;
                 }
-                if E::RING && !heat.is_empty() {
+                if kernels.ring && !heat.is_empty() {
                     (heat[3], heat[4]) = (stress_zz, stress_zz);
                 } else if in_strain && !heat.is_empty() {
                     // The energy is quadratic in the initial stress.
@@ -293,7 +287,8 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                     heat[4] = stress_zz;
                 }
             }
-            let stretch = if E::RING { 1.0 + at.hoop } else { section.strain.stretch(strain_zz) };
+            let stretch =
+                if kernels.ring { 1.0 + at.hoop } else { section.strain.stretch(strain_zz) };
             let [xx, yy, zz, xy] = section.strain.cauchy(&h, stress, stress_zz, stretch);
             let s_global = turn([xx, yy, xy], frame.cos, frame.sin);
             let e_global = turn([total[0], total[1], 0.5 * total[2]], frame.cos, frame.sin);
@@ -329,13 +324,13 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             out.penalty[e] += kinematics[p].penalty;
         }
         let drilling = out.penalty[e];
-        let [first, second] = E::stabilization(&x, &frame.q, section, &own, &new[memory..]);
+        let [first, second] = (kernels.stabilization)(&x, &frame.q, section, &own, &new[memory..]);
         out.penalty[e] += first[0] + second[0];
-        if let (Some(member), true) = (E::DISSIPATED, members > 0) {
+        if let (Some(member), true) = (kernels.dissipated, members > 0) {
             out.dissipated[e] = new[memory + member];
         }
         if let Some(row) = out.stabilized.get_mut(6 * e..6 * e + 6) {
-            let stiffness = if E::Op::<f64>::DRILL { parameter } else { 1.0 };
+            let stiffness = if kernels.drill { parameter } else { 1.0 };
             row.copy_from_slice([[drilling, stiffness], first, second].as_flattened());
         }
         out.rotation[e] = frame.angle();
@@ -343,25 +338,21 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
 }
 
 /// Strains that the material meets at the points, `[n, p, 3]` of the whole block.
-pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
-    chunk: &ChunkOf<E, N, M, A>,
+pub(super) fn strains<const N: usize, const M: usize>(
+    chunk: &ChunkOf<N, M>,
     context: &Context<'_>,
     alpha: &[f64],
     out: &mut [f64],
-) where
-    E: Element<N, M, A>,
-{
+) {
+    let kernels = &chunk.kernels;
     let section = chunk.shared.section(context.nlgeom);
     let n_points = section.points.len();
     let stride = chunk.stride;
     for e in 0..chunk.nodes.len() {
         let (x, u) = chunk.gather::<f64>(e, context);
-        let mut modes = [[0.0; 2]; A];
-        for m in 0..A {
-            modes[m] = [alpha[2 * m * stride + e], alpha[(2 * m + 1) * stride + e]];
-        }
+        let modes: Vec<f64> = (0..2 * kernels.modes).map(|m| alpha[m * stride + e]).collect();
         let kinematics =
-            E::kinematics(&x, &u, &modes, section, &chunk.per_point(e), context.nlgeom);
+            (kernels.kinematics)(&x, &u, &modes, section, &chunk.per_point(e), context.nlgeom);
         for (p, at) in kinematics.iter().enumerate() {
             let [xx, yy, _, xy] = at.strain;
             let at = 3 * (chunk.elements[e] as usize * n_points + p);

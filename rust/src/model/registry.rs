@@ -140,3 +140,34 @@ pub fn find(name: &str) -> Result<Facts, String> {
         format!("no element named {name:?}; there are {}", names.join(", "))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Element;
+    use crate::kinematics::kernels::Kernels;
+
+    /// Elements that share their code differ in the rule, and in facts that no code reads.
+    fn code_fits<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>() {
+        fn read<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>() -> String {
+            let k = Kernels::<N, M>::of::<E, A>();
+            let facts =
+                (k.modes, k.memory, k.dissipated, k.line, k.spring, k.turns, k.ring, k.drill);
+            let edges = (k.alpha_b, k.edge, (k.edge_of)(0.3, 0.7), (k.sides)([0.3, 0.2]));
+            let strain = (E::ABOUT_MEAN, E::MEAN_DILATATION);
+            let moduli = [[3.0, 1.0, 0.0], [1.0, 3.0, 0.0], [0.0, 0.0, 1.0]];
+            let numbers = ((k.parameter)(&moduli), E::shape([0.3, 0.2]), E::mass_rule());
+            format!("{facts:?} {edges:?} {strain:?} {numbers:?}")
+        }
+        assert_eq!(read::<E, N, M, A>(), read::<E::Code, N, M, A>(), "{}", E::NAME);
+    }
+
+    #[test]
+    fn elements_that_share_their_code_differ_in_the_rule_only() {
+        macro_rules! each {
+            ($e:ty, $n:literal, $m:literal, $a:literal) => {
+                code_fits::<$e, $n, $m, $a>();
+            };
+        }
+        for_each_element!(each);
+    }
+}

@@ -12,16 +12,13 @@ use super::build::Block;
 use super::chunk::{Chunk, Context};
 use super::chunk_of::ChunkOf;
 use super::dofs::Dofs;
+use crate::base::Real;
 use crate::base::small::Nodal;
-use crate::base::{Dual, Real};
-use crate::elements::Element;
 use crate::elements::element;
 use crate::kinematics::integrate::{History, Local};
-use crate::kinematics::law_tape::{LawTape, Number, WIDTH, Way};
+use crate::kinematics::kernels::Respond;
+use crate::kinematics::law_tape::{Along, LawTape, Number, WIDTH, Way};
 use crate::kinematics::per_point::PerPoint;
-
-/// A number with its derivative along the weights of the forces.
-type Along = Dual<1, true>;
 
 /// Weights of what is differentiated, and which derivatives are wanted.
 #[derive(Clone, Copy)]
@@ -191,13 +188,12 @@ struct Inputs {
     initial: Stored,
 }
 
-impl<E, const N: usize, const M: usize, const A: usize> ChunkOf<E, N, M, A>
-where
-    E: Element<N, M, A>,
-{
+impl<const N: usize, const M: usize> ChunkOf<N, M> {
     /// Whether the laws of the points say all of the history of an element: what an element of a
     /// plane remembers itself follows the tangents.
-    const TAPED: bool = E::MEMORY == 0 || E::LINE;
+    fn taped(&self) -> bool {
+        self.kernels.memory == 0 || self.kernels.line
+    }
 
     /// Members of the state of an element.
     pub(super) fn n_state(&self) -> usize {
@@ -207,6 +203,7 @@ where
     /// Inputs whose derivatives go forwards.
     fn inputs(&self, wanted: Wanted) -> Vec<Input> {
         let n_points = self.shared.section.points.len();
+        let taped = self.taped();
         let mut all = Vec::new();
         let mut add = |some: bool, n: usize, make: fn(usize) -> Input| {
             if some {
@@ -214,8 +211,8 @@ where
             }
         };
         add(wanted.positions, 2 * N, Input::Position);
-        add(wanted.displacements && !Self::TAPED, M * N, Input::Displacement);
-        add(wanted.state && !Self::TAPED, self.n_state(), Input::State);
+        add(wanted.displacements && !taped, M * N, Input::Displacement);
+        add(wanted.state && !taped, self.n_state(), Input::State);
         add(wanted.thickness, n_points, Input::Thickness);
         add(wanted.initial, 4 * n_points, Input::Initial);
         all
@@ -226,7 +223,7 @@ where
         Inputs {
             old: Stored::new::<T>(n_state),
             new: Stored::new::<T>(n_state),
-            alpha: Stored::new::<T>(2 * A),
+            alpha: Stored::new::<T>(2 * self.kernels.modes),
             thickness: Stored::new::<T>(n_points),
             sides: Stored::new::<T>(if self.sides.is_empty() { 0 } else { N }),
             initial: Stored::new::<T>(if strained { 4 * n_points } else { 0 }),
@@ -236,8 +233,8 @@ where
     /// Values of an element, about the modes and the own memory of the last evaluation.
     fn set(&self, inputs: &mut Inputs, e: usize) {
         let at = |values: &[f64], k: usize| values[k * self.stride + e];
-        let memory =
-            if E::LINE { self.n_state() - E::MEMORY.min(self.n_state()) } else { usize::MAX };
+        let (own, n_state) = (self.kernels.memory, self.n_state());
+        let memory = if self.kernels.line { n_state - own.min(n_state) } else { usize::MAX };
         inputs.old.set(|k| at(if k < memory { &self.old } else { &self.new }, k));
         inputs.new.set(|_| 0.0);
         inputs.alpha.set(|k| at(&self.alpha, k));
@@ -252,6 +249,7 @@ where
     /// Answer of an element.
     fn respond<T: Real>(
         &self,
+        respond: Respond<T, N, M>,
         e: usize,
         context: &Context<'_>,
         (x, u): (&Nodal<T, N, 2>, &Nodal<T, N, M>),
@@ -276,19 +274,19 @@ where
         };
         let mut answer = Local::zero();
         let section = self.shared.section(context.nlgeom);
-        E::respond(x, u, section, &mut history, forces, &mut answer);
+        respond(x, u, section, &mut history, forces, &mut answer);
         answer
     }
 
     /// Gradients of all elements of the chunk about their last evaluation.
     pub(super) fn differentiate(&self, context: &Context<'_>, weights: &Weights<'_>) -> Gradients {
-        let section = &self.shared.section;
+        let (section, kernels, taped) = (&self.shared.section, &self.kernels, self.taped());
         let (n_points, n_state) = (section.points.len(), self.n_state());
         let wanted = weights.wanted;
         let forward = self.inputs(wanted);
         // The way forwards weighs the forces of internal modes by what comes backwards.
-        let backward =
-            Self::TAPED && (wanted.displacements || wanted.state || (A > 0 && !forward.is_empty()));
+        let backward = taped
+            && (wanted.displacements || wanted.state || (kernels.modes > 0 && !forward.is_empty()));
         let n = self.nodes.len();
         let mut out = Gradients::default();
         let state = weights.state.get(self.shared.block).map_or(&[][..], Vec::as_slice);
@@ -321,7 +319,14 @@ where
                     }
                 }
                 self.set(&mut along, e);
-                let answer = self.respond(e, context, (&x, &u), &mut along, Some(&mut tape));
+                let answer = self.respond(
+                    kernels.respond_along,
+                    e,
+                    context,
+                    (&x, &u),
+                    &mut along,
+                    Some(&mut tape),
+                );
                 failed |= answer.failed;
                 if wanted.displacements {
                     let to = &mut out.displacements[M * N * e..][..M * N];
@@ -349,8 +354,9 @@ where
                         Input::Initial(k) => inputs.initial.seed(k, variable),
                     }
                 }
-                let taped = Self::TAPED.then_some(&mut tape);
-                let answer = self.respond(e, context, (&x, &u), &mut inputs, taped);
+                let on = taped.then_some(&mut tape);
+                let respond = kernels.respond_number;
+                let answer = self.respond(respond, e, context, (&x, &u), &mut inputs, on);
                 failed |= answer.failed;
                 let mut sum = self.weighted(e, context, weights, own, &answer.force, &inputs.new);
                 for (s, d) in sum.iter_mut().zip(std::mem::take(&mut tape.sum)) {
@@ -366,7 +372,7 @@ where
                     }
                 }
             }
-            out.inexact |= !(Self::TAPED && tape.exact) || section.law.ideal();
+            out.inexact |= !(taped && tape.exact) || section.law.ideal();
             if failed {
                 out.failed.push(self.elements[e] as usize);
             }

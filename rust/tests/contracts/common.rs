@@ -6,7 +6,7 @@ use corota::base::small::{Blocks, Nodal};
 use corota::base::{Dual, Real};
 use corota::elements::Element;
 use corota::kinematics::corotation::Frame;
-use corota::kinematics::integrate::{History, Section, local};
+use corota::kinematics::integrate::{History, Local, Section, single_into};
 use corota::kinematics::local_strain::LocalStrain;
 use corota::kinematics::per_point::PerPoint;
 use corota::materials::{Law, Plane, State};
@@ -193,7 +193,8 @@ where
         per_point: PerPoint::default(),
         tape: None,
     };
-    let answer = local::<E, T, N, M, A>(&x, &frame.q, section, &mut history, true);
+    let mut answer = Local::zero();
+    single_into::<E, T, N, M, A>(&x, &frame.q, section, &mut history, true, &mut answer);
     let mut stiffness = answer.stiffness;
     let force = frame.force(&answer.force);
     frame.stiffness(&answer.force, &mut stiffness);
