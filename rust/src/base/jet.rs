@@ -2,7 +2,7 @@
 //! three variables.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::real::Real;
+use super::real::{Real, shared};
 use std::ops::{Add, AddAssign, Mul, Sub};
 
 /// Rows and columns of the entries of [`Jet::h`].
@@ -39,14 +39,19 @@ impl<T: Real> Jet<T> {
     /// A function of this number with value `v`, first and second derivative.
     #[inline(always)]
     pub fn chain(self, v: T, first: T, second: T) -> Self {
-        let mut y = Self::constant(v);
-        for i in 0..3 {
-            y.d[i] = first * self.d[i];
-        }
-        for (k, (i, j)) in PAIRS.into_iter().enumerate() {
-            y.h[k] = first.fma(self.h[k], second * self.d[i] * self.d[j]);
-        }
-        y
+        shared::<T, _>(
+            #[inline(always)]
+            || {
+                let mut y = Self::constant(v);
+                for i in 0..3 {
+                    y.d[i] = first * self.d[i];
+                }
+                for (k, (i, j)) in PAIRS.into_iter().enumerate() {
+                    y.h[k] = first.fma(self.h[k], second * self.d[i] * self.d[j]);
+                }
+                y
+            },
+        )
     }
 
     /// Times a plain number.
@@ -118,14 +123,19 @@ impl<T: Real> Mul for Jet<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        let mut y = Self::constant(self.v * o.v);
-        for i in 0..3 {
-            y.d[i] = self.d[i].fma(o.v, self.v * o.d[i]);
-        }
-        for (k, (i, j)) in PAIRS.into_iter().enumerate() {
-            let mixed = self.d[i].fma(o.d[j], self.d[j] * o.d[i]);
-            y.h[k] = self.h[k].fma(o.v, self.v.fma(o.h[k], mixed));
-        }
-        y
+        shared::<T, _>(
+            #[inline(always)]
+            || {
+                let mut y = Self::constant(self.v * o.v);
+                for i in 0..3 {
+                    y.d[i] = self.d[i].fma(o.v, self.v * o.d[i]);
+                }
+                for (k, (i, j)) in PAIRS.into_iter().enumerate() {
+                    let mixed = self.d[i].fma(o.d[j], self.d[j] * o.d[i]);
+                    y.h[k] = self.h[k].fma(o.v, self.v.fma(o.h[k], mixed));
+                }
+                y
+            },
+        )
     }
 }

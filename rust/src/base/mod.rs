@@ -15,4 +15,4 @@ pub mod thread_autotuner;
 pub use dual::Dual;
 pub use hyper::{Hyper, Smooth};
 pub use pack::{Kernel, Lanes, MAX_LANES, dispatch};
-pub use real::{Job, Real, out_of_line};
+pub use real::{Job, Real, shared, shared_dual};

@@ -13,8 +13,22 @@ pub trait Job {
 
 /// Call a function out of line: one instance for all who share its arguments' types.
 #[inline(never)]
-pub fn out_of_line<R>(f: impl FnOnce() -> R) -> R {
+fn out_of_line<R>(f: impl FnOnce() -> R) -> R {
     f()
+}
+
+/// Call a closure out of line where numbers travel alone.
+///
+/// The closure must be `#[inline(always)]`: lanes have vector instructions only in what is inlined.
+#[inline(always)]
+pub fn shared<T: Real, R>(f: impl FnOnce() -> R) -> R {
+    if const { T::LANES == 1 } { out_of_line(f) } else { f() }
+}
+
+/// Call a closure out of line where numbers carry derivatives, beside which a call costs nothing.
+#[inline(always)]
+pub fn shared_dual<T: Real, R>(f: impl FnOnce() -> R) -> R {
+    if const { T::DERIVATIVES > 0 } { out_of_line(f) } else { f() }
 }
 
 /// A real number, or several at once (lanes), or one with its derivatives.

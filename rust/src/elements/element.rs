@@ -2,8 +2,8 @@
 //! displacement gradient at a point. Everything else is written once elsewhere.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::base::Real;
 use crate::base::small::{Blocks, Mat, Nodal};
+use crate::base::{Real, shared_dual};
 use crate::elements::line::Resultants;
 use crate::elements::shapes;
 use crate::kinematics::corotation::Frame;
@@ -195,7 +195,7 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
             // Forces turn with the element, from the reference on.
             frame = Frame::new(x, &[[T::zero(); M]; N], true);
         }
-        if tangent && Self::TURNS {
+        if const { T::STIFFNESS && Self::TURNS } && tangent {
             frame.stiffness(&local, &mut out.stiffness);
         }
     }
@@ -256,12 +256,19 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
 
     /// The points of a rule with the shape functions there.
     fn points(rule: &[[f64; 3]]) -> Vec<Point<N>> {
-        let tabulate = |&[r, s, weight]: &[f64; 3]| {
-            let (n, dn) = Self::shape([r, s]);
-            Point { xi: [r, s], weight, n, dn }
-        };
-        rule.iter().map(tabulate).collect()
+        tabulate(rule, Self::shape)
     }
+}
+
+fn tabulate<const N: usize>(
+    rule: &[[f64; 3]],
+    shape: fn([f64; 2]) -> ([f64; N], [[f64; 2]; N]),
+) -> Vec<Point<N>> {
+    let at = |&[r, s, weight]: &[f64; 3]| {
+        let (n, dn) = shape([r, s]);
+        Point { xi: [r, s], weight, n, dn }
+    };
+    rule.iter().map(at).collect()
 }
 
 /// Operator of elements whose displacement is interpolated from the nodes: only the
@@ -274,15 +281,20 @@ impl<T: Real, const N: usize> Operator<T, N, 2> for Grad<T, N> {
 
     #[inline(always)]
     fn gradient(&self, q: &Nodal<T, N, 2>) -> [T; 4] {
-        let mut h = [T::zero(); 4];
-        for a in 0..N {
-            for i in 0..2 {
-                for j in 0..2 {
-                    h[2 * i + j] = self.0[a][j].fma(q[a][i], h[2 * i + j]);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let mut h = [T::zero(); 4];
+                for a in 0..N {
+                    for i in 0..2 {
+                        for j in 0..2 {
+                            h[2 * i + j] = self.0[a][j].fma(q[a][i], h[2 * i + j]);
+                        }
+                    }
                 }
-            }
-        }
-        h
+                h
+            },
+        )
     }
     #[inline(always)]
     fn drill(&self, _: &Nodal<T, N, 2>) -> T {
@@ -290,33 +302,43 @@ impl<T: Real, const N: usize> Operator<T, N, 2> for Grad<T, N> {
     }
     #[inline(always)]
     fn add_force(&self, p: &[T; 4], _: T, f: &mut Nodal<T, N, 2>) {
-        for a in 0..N {
-            for i in 0..2 {
-                for j in 0..2 {
-                    f[a][i] = self.0[a][j].fma(p[2 * i + j], f[a][i]);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                for a in 0..N {
+                    for i in 0..2 {
+                        for j in 0..2 {
+                            f[a][i] = self.0[a][j].fma(p[2 * i + j], f[a][i]);
+                        }
+                    }
                 }
-            }
-        }
+            },
+        );
     }
     #[inline(always)]
     fn add_stiffness(&self, m: &Mat<T, 4>, _: T, k: &mut Blocks<T, N, 2>) {
-        for b in 0..N {
-            // t[r][j]: row r of A H for component j of node b
-            let mut t = [[T::zero(); 2]; 4];
-            for r in 0..4 {
-                for j in 0..2 {
-                    t[r][j] = m[r][2 * j].fma(self.0[b][0], m[r][2 * j + 1] * self.0[b][1]);
-                }
-            }
-            for a in 0..=b {
-                for i in 0..2 {
-                    for j in 0..2 {
-                        let v = self.0[a][0].fma(t[2 * i][j], k[a][b][i][j]);
-                        k[a][b][i][j] = self.0[a][1].fma(t[2 * i + 1][j], v);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                for b in 0..N {
+                    // t[r][j]: row r of A H for component j of node b
+                    let mut t = [[T::zero(); 2]; 4];
+                    for r in 0..4 {
+                        for j in 0..2 {
+                            t[r][j] = m[r][2 * j].fma(self.0[b][0], m[r][2 * j + 1] * self.0[b][1]);
+                        }
+                    }
+                    for a in 0..=b {
+                        for i in 0..2 {
+                            for j in 0..2 {
+                                let v = self.0[a][0].fma(t[2 * i][j], k[a][b][i][j]);
+                                k[a][b][i][j] = self.0[a][1].fma(t[2 * i + 1][j], v);
+                            }
+                        }
                     }
                 }
-            }
-        }
+            },
+        );
     }
     #[inline(always)]
     fn column(&self, a: usize, i: usize) -> ([T; 4], T) {
@@ -336,15 +358,20 @@ impl<T: Real, const N: usize> Operator<T, N, 3> for Full<T, N> {
 
     #[inline(always)]
     fn gradient(&self, q: &Nodal<T, N, 3>) -> [T; 4] {
-        let mut h = [T::zero(); 4];
-        for a in 0..N {
-            for i in 0..3 {
-                for r in 0..4 {
-                    h[r] = self.0[a][i][r].fma(q[a][i], h[r]);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let mut h = [T::zero(); 4];
+                for a in 0..N {
+                    for i in 0..3 {
+                        for r in 0..4 {
+                            h[r] = self.0[a][i][r].fma(q[a][i], h[r]);
+                        }
+                    }
                 }
-            }
-        }
-        h
+                h
+            },
+        )
     }
     #[inline(always)]
     fn drill(&self, _: &Nodal<T, N, 3>) -> T {
@@ -352,33 +379,43 @@ impl<T: Real, const N: usize> Operator<T, N, 3> for Full<T, N> {
     }
     #[inline(always)]
     fn add_force(&self, p: &[T; 4], _: T, f: &mut Nodal<T, N, 3>) {
-        for a in 0..N {
-            for i in 0..3 {
-                for r in 0..4 {
-                    f[a][i] = self.0[a][i][r].fma(p[r], f[a][i]);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                for a in 0..N {
+                    for i in 0..3 {
+                        for r in 0..4 {
+                            f[a][i] = self.0[a][i][r].fma(p[r], f[a][i]);
+                        }
+                    }
                 }
-            }
-        }
+            },
+        );
     }
     #[inline(always)]
     fn add_stiffness(&self, m: &Mat<T, 4>, _: T, k: &mut Blocks<T, N, 3>) {
-        for b in 0..N {
-            let mut t = [[T::zero(); 4]; 3];
-            for j in 0..3 {
-                t[j] = times(m, &self.0[b][j]);
-            }
-            for a in 0..=b {
-                for i in 0..3 {
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                for b in 0..N {
+                    let mut t = [[T::zero(); 4]; 3];
                     for j in 0..3 {
-                        let mut v = k[a][b][i][j];
-                        for r in 0..4 {
-                            v = self.0[a][i][r].fma(t[j][r], v);
+                        t[j] = times(m, &self.0[b][j]);
+                    }
+                    for a in 0..=b {
+                        for i in 0..3 {
+                            for j in 0..3 {
+                                let mut v = k[a][b][i][j];
+                                for r in 0..4 {
+                                    v = self.0[a][i][r].fma(t[j][r], v);
+                                }
+                                k[a][b][i][j] = v;
+                            }
                         }
-                        k[a][b][i][j] = v;
                     }
                 }
-            }
-        }
+            },
+        );
     }
     #[inline(always)]
     fn column(&self, a: usize, i: usize) -> ([T; 4], T) {
@@ -403,18 +440,23 @@ impl<T: Real, const N: usize> Operator<T, N, 3> for Drilling<T, N> {
 
     #[inline(always)]
     fn gradient(&self, q: &Nodal<T, N, 3>) -> [T; 4] {
-        let mut h = [T::zero(); 4];
-        for a in 0..N {
-            for i in 0..2 {
-                for j in 0..2 {
-                    h[2 * i + j] = self.grad[a][j].fma(q[a][i], h[2 * i + j]);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let mut h = [T::zero(); 4];
+                for a in 0..N {
+                    for i in 0..2 {
+                        for j in 0..2 {
+                            h[2 * i + j] = self.grad[a][j].fma(q[a][i], h[2 * i + j]);
+                        }
+                    }
+                    for r in 0..4 {
+                        h[r] = self.turn[a][r].fma(q[a][2], h[r]);
+                    }
                 }
-            }
-            for r in 0..4 {
-                h[r] = self.turn[a][r].fma(q[a][2], h[r]);
-            }
-        }
-        h
+                h
+            },
+        )
     }
     #[inline(always)]
     fn drill(&self, q: &Nodal<T, N, 3>) -> T {
@@ -427,62 +469,74 @@ impl<T: Real, const N: usize> Operator<T, N, 3> for Drilling<T, N> {
     }
     #[inline(always)]
     fn add_force(&self, p: &[T; 4], drill: T, f: &mut Nodal<T, N, 3>) {
-        let half = drill.scale(0.5);
-        let p = [p[0], p[1] - half, p[2] + half, p[3]];
-        for a in 0..N {
-            for i in 0..2 {
-                for j in 0..2 {
-                    f[a][i] = self.grad[a][j].fma(p[2 * i + j], f[a][i]);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let half = drill.scale(0.5);
+                let p = [p[0], p[1] - half, p[2] + half, p[3]];
+                for a in 0..N {
+                    for i in 0..2 {
+                        for j in 0..2 {
+                            f[a][i] = self.grad[a][j].fma(p[2 * i + j], f[a][i]);
+                        }
+                    }
+                    f[a][2] = T::real(-self.n[a]).fma(drill, f[a][2]);
+                    for r in 0..4 {
+                        f[a][2] = self.turn[a][r].fma(p[r], f[a][2]);
+                    }
                 }
-            }
-            f[a][2] = T::real(-self.n[a]).fma(drill, f[a][2]);
-            for r in 0..4 {
-                f[a][2] = self.turn[a][r].fma(p[r], f[a][2]);
-            }
-        }
+            },
+        );
     }
     #[inline(always)]
     fn add_stiffness(&self, m: &Mat<T, 4>, gamma: T, k: &mut Blocks<T, N, 3>) {
-        let (half, quarter) = (gamma.scale(0.5), gamma.scale(0.25));
-        let mut m = *m;
-        for (i, j) in [(1, 2), (2, 1)] {
-            m[i][i] += quarter;
-            m[i][j] -= quarter;
-        }
-        // Rows of the product for the rotation of each node; the fifth is that of the
-        // interpolated rotation.
-        let mut t = [[T::zero(); 5]; N];
-        for b in 0..N {
-            let h = &self.turn[b];
-            let v = times(&m, h);
-            let n = T::real(self.n[b]);
-            let skew = half * (h[1] - h[2]);
-            t[b] = [v[0], n.fma(half, v[1]), (-n).fma(half, v[2]), v[3], n.fma(gamma, skew)];
-        }
-        for b in 0..N {
-            let g = &self.grad[b];
-            let mut s = [[T::zero(); 2]; 4];
-            for r in 0..4 {
-                for j in 0..2 {
-                    s[r][j] = m[r][2 * j].fma(g[0], m[r][2 * j + 1] * g[1]);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let (half, quarter) = (gamma.scale(0.5), gamma.scale(0.25));
+                let mut m = *m;
+                for (i, j) in [(1, 2), (2, 1)] {
+                    m[i][i] += quarter;
+                    m[i][j] -= quarter;
                 }
-            }
-            for a in 0..=b {
-                let ga = &self.grad[a];
-                let k = &mut k[a][b];
-                for i in 0..2 {
-                    for j in 0..2 {
-                        k[i][j] = ga[0].fma(s[2 * i][j], ga[1].fma(s[2 * i + 1][j], k[i][j]));
+                // Rows of the product for the rotation of each node; the fifth is that of the
+                // interpolated rotation.
+                let mut t = [[T::zero(); 5]; N];
+                for b in 0..N {
+                    let h = &self.turn[b];
+                    let v = times(&m, h);
+                    let n = T::real(self.n[b]);
+                    let skew = half * (h[1] - h[2]);
+                    t[b] =
+                        [v[0], n.fma(half, v[1]), (-n).fma(half, v[2]), v[3], n.fma(gamma, skew)];
+                }
+                for b in 0..N {
+                    let g = &self.grad[b];
+                    let mut s = [[T::zero(); 2]; 4];
+                    for r in 0..4 {
+                        for j in 0..2 {
+                            s[r][j] = m[r][2 * j].fma(g[0], m[r][2 * j + 1] * g[1]);
+                        }
                     }
-                    k[i][2] = ga[0].fma(t[b][2 * i], ga[1].fma(t[b][2 * i + 1], k[i][2]));
-                    k[2][i] = g[0].fma(t[a][2 * i], g[1].fma(t[a][2 * i + 1], k[2][i]));
+                    for a in 0..=b {
+                        let ga = &self.grad[a];
+                        let k = &mut k[a][b];
+                        for i in 0..2 {
+                            for j in 0..2 {
+                                k[i][j] =
+                                    ga[0].fma(s[2 * i][j], ga[1].fma(s[2 * i + 1][j], k[i][j]));
+                            }
+                            k[i][2] = ga[0].fma(t[b][2 * i], ga[1].fma(t[b][2 * i + 1], k[i][2]));
+                            k[2][i] = g[0].fma(t[a][2 * i], g[1].fma(t[a][2 * i + 1], k[2][i]));
+                        }
+                        k[2][2] = T::real(self.n[a]).fma(t[b][4], k[2][2]);
+                        for r in 0..4 {
+                            k[2][2] = self.turn[a][r].fma(t[b][r], k[2][2]);
+                        }
+                    }
                 }
-                k[2][2] = T::real(self.n[a]).fma(t[b][4], k[2][2]);
-                for r in 0..4 {
-                    k[2][2] = self.turn[a][r].fma(t[b][r], k[2][2]);
-                }
-            }
-        }
+            },
+        );
     }
     #[inline(always)]
     fn column(&self, a: usize, i: usize) -> ([T; 4], T) {

@@ -10,8 +10,8 @@
 
 use super::element::{Element, Operator, Point, Sample, Wanted};
 use super::shapes;
-use crate::base::Real;
 use crate::base::small::{Blocks, Mat, Nodal, blocks};
+use crate::base::{Real, shared_dual};
 use crate::kinematics::corotation::Frame;
 use crate::kinematics::integrate::{self, History, Local, PointKinematics, Section};
 use crate::kinematics::per_point::PerPoint;
@@ -32,15 +32,20 @@ impl<T: Real, const N: usize> Operator<T, N, 3> for Hoop<T, N> {
 
     #[inline(always)]
     fn gradient(&self, q: &Nodal<T, N, 3>) -> [T; 4] {
-        let mut h = [T::zero(); 4];
-        for a in 0..N {
-            for i in 0..2 {
-                for j in 0..2 {
-                    h[2 * i + j] = self.grad[a][j].fma(q[a][i], h[2 * i + j]);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let mut h = [T::zero(); 4];
+                for a in 0..N {
+                    for i in 0..2 {
+                        for j in 0..2 {
+                            h[2 * i + j] = self.grad[a][j].fma(q[a][i], h[2 * i + j]);
+                        }
+                    }
                 }
-            }
-        }
-        h
+                h
+            },
+        )
     }
     #[inline(always)]
     fn drill(&self, q: &Nodal<T, N, 3>) -> T {
@@ -52,53 +57,69 @@ impl<T: Real, const N: usize> Operator<T, N, 3> for Hoop<T, N> {
     }
     #[inline(always)]
     fn add_force(&self, p: &[T; 4], hoop: T, f: &mut Nodal<T, N, 3>) {
-        for a in 0..N {
-            for i in 0..2 {
-                for j in 0..2 {
-                    f[a][i] = self.grad[a][j].fma(p[2 * i + j], f[a][i]);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                for a in 0..N {
+                    for i in 0..2 {
+                        for j in 0..2 {
+                            f[a][i] = self.grad[a][j].fma(p[2 * i + j], f[a][i]);
+                        }
+                    }
+                    f[a][2] = self.row[a].fma(hoop, f[a][2]);
                 }
-            }
-            f[a][2] = self.row[a].fma(hoop, f[a][2]);
-        }
+            },
+        );
     }
     #[inline(always)]
     fn add_stiffness(&self, m: &Mat<T, 4>, gamma: T, k: &mut Blocks<T, N, 3>) {
-        for b in 0..N {
-            let mut t = [[T::zero(); 2]; 4];
-            for r in 0..4 {
-                for j in 0..2 {
-                    t[r][j] = m[r][2 * j].fma(self.grad[b][0], m[r][2 * j + 1] * self.grad[b][1]);
-                }
-            }
-            let hoop = gamma * self.row[b];
-            for a in 0..=b {
-                let k = &mut k[a][b];
-                for i in 0..2 {
-                    for j in 0..2 {
-                        let v = self.grad[a][0].fma(t[2 * i][j], k[i][j]);
-                        k[i][j] = self.grad[a][1].fma(t[2 * i + 1][j], v);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                for b in 0..N {
+                    let mut t = [[T::zero(); 2]; 4];
+                    for r in 0..4 {
+                        for j in 0..2 {
+                            t[r][j] =
+                                m[r][2 * j].fma(self.grad[b][0], m[r][2 * j + 1] * self.grad[b][1]);
+                        }
+                    }
+                    let hoop = gamma * self.row[b];
+                    for a in 0..=b {
+                        let k = &mut k[a][b];
+                        for i in 0..2 {
+                            for j in 0..2 {
+                                let v = self.grad[a][0].fma(t[2 * i][j], k[i][j]);
+                                k[i][j] = self.grad[a][1].fma(t[2 * i + 1][j], v);
+                            }
+                        }
+                        k[2][2] = self.row[a].fma(hoop, k[2][2]);
                     }
                 }
-                k[2][2] = self.row[a].fma(hoop, k[2][2]);
-            }
-        }
+            },
+        );
     }
     #[inline(always)]
     fn add_coupling(&self, c: &[T; 4], k: &mut Blocks<T, N, 3>) {
-        let mut t = [[T::zero(); 2]; N];
-        for a in 0..N {
-            for i in 0..2 {
-                t[a][i] = self.grad[a][0].fma(c[2 * i], self.grad[a][1] * c[2 * i + 1]);
-            }
-        }
-        for b in 0..N {
-            for a in 0..=b {
-                for i in 0..2 {
-                    k[a][b][i][2] = t[a][i].fma(self.row[b], k[a][b][i][2]);
-                    k[a][b][2][i] = self.row[a].fma(t[b][i], k[a][b][2][i]);
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let mut t = [[T::zero(); 2]; N];
+                for a in 0..N {
+                    for i in 0..2 {
+                        t[a][i] = self.grad[a][0].fma(c[2 * i], self.grad[a][1] * c[2 * i + 1]);
+                    }
                 }
-            }
-        }
+                for b in 0..N {
+                    for a in 0..=b {
+                        for i in 0..2 {
+                            k[a][b][i][2] = t[a][i].fma(self.row[b], k[a][b][i][2]);
+                            k[a][b][2][i] = self.row[a].fma(t[b][i], k[a][b][2][i]);
+                        }
+                    }
+                }
+            },
+        );
     }
     #[inline(always)]
     fn column(&self, a: usize, i: usize) -> ([T; 4], T) {
@@ -338,7 +359,7 @@ where
         if wanted.stressed {
             frame = Frame::new(x, &[[T::zero(); 2]; N], true);
         }
-        if !tangent {
+        if const { !T::STIFFNESS } || !tangent {
             return;
         }
         // Coupling of the local dofs (rows) with the radial displacements (columns).

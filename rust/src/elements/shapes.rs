@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::element::Point;
-use crate::base::Real;
 use crate::base::small::{Nodal, inverse2};
+use crate::base::{Real, shared_dual};
 
 /// Gauss rule with `n` points a direction on the square `[-1, 1]^2`.
 pub fn gauss_square(n: usize) -> Vec<[f64; 3]> {
@@ -187,8 +187,13 @@ pub fn gradients<T: Real, const N: usize>(
     x: &Nodal<T, N, 2>,
     point: &Point<N>,
 ) -> ([[T; 2]; N], T) {
-    let (inverse, det) = inverse2(&jacobian(x, &point.dn));
-    (push(&inverse, &point.dn), det.scale(point.weight))
+    shared_dual::<T, _>(
+        #[inline(always)]
+        || {
+            let (inverse, det) = inverse2(&jacobian(x, &point.dn));
+            (push(&inverse, &point.dn), det.scale(point.weight))
+        },
+    )
 }
 
 /// Half of `S e`, the edge vector turned by a right angle: with the mid-side function, the

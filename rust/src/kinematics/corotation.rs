@@ -3,8 +3,8 @@
 //! (Felippa & Haugen 2005; rotation: Battini 2008, Cho et al. 2017, eq. 1).
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::base::Real;
 use crate::base::small::{Blocks, Nodal, dot, symmetric_times};
+use crate::base::{Real, shared_dual};
 
 /// Element frame in a configuration, and the local dofs seen from it.
 pub struct Frame<T, const N: usize, const M: usize> {
@@ -23,6 +23,14 @@ impl<T: Real, const N: usize, const M: usize> Frame<T, N, M> {
     /// `turning == false` the frame stays (geometrically linear analysis).
     #[inline(always)]
     pub fn new(x: &Nodal<T, N, 2>, u: &Nodal<T, N, M>, nlgeom: bool) -> Self {
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || Self::new_inline(x, u, nlgeom),
+        )
+    }
+
+    #[inline(always)]
+    fn new_inline(x: &Nodal<T, N, 2>, u: &Nodal<T, N, M>, nlgeom: bool) -> Self {
         let mut g = [[T::zero(); M]; N];
         let mut a = [[T::zero(); M]; N];
         if !nlgeom {
@@ -85,20 +93,33 @@ impl<T: Real, const N: usize, const M: usize> Frame<T, N, M> {
     /// Force in global axes from the local one: `E (f - g (a . f))`.
     #[inline(always)]
     pub fn force(&self, local: &Nodal<T, N, M>) -> Nodal<T, N, M> {
-        let n = self.balanced(local);
-        let mut f = n;
-        for b in 0..N {
-            let v = self.to_global([n[b][0], n[b][1]]);
-            f[b][0] = v[0];
-            f[b][1] = v[1];
-        }
-        f
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let n = self.balanced(local);
+                let mut f = n;
+                for b in 0..N {
+                    let v = self.to_global([n[b][0], n[b][1]]);
+                    f[b][0] = v[0];
+                    f[b][1] = v[1];
+                }
+                f
+            },
+        )
     }
 
     /// Tangent in global axes: the exact derivative of [`Frame::force`], as a symmetric
     /// rank-two update `E (K + p g^T + g p^T) E^T`; blocks `a <= b` in place.
     #[inline(always)]
     pub fn stiffness(&self, local_force: &Nodal<T, N, M>, k: &mut Blocks<T, N, M>) {
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || self.stiffness_inline(local_force, k),
+        );
+    }
+
+    #[inline(always)]
+    fn stiffness_inline(&self, local_force: &Nodal<T, N, M>, k: &mut Blocks<T, N, M>) {
         let n = self.balanced(local_force);
         let ka = symmetric_times(k, &self.a);
         let mut p = [[T::zero(); M]; N];

@@ -11,7 +11,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use crate::base::small::Mat;
-use crate::base::{Real, out_of_line};
+use crate::base::{Real, shared};
 
 /// Largest `w` for which the series is summed.
 const SERIES: f64 = 0.1;
@@ -93,15 +93,15 @@ fn parts<T: Real>(h: &[T; 4]) -> Parts<T> {
 /// Strain xx, yy, xy (engineering shear).
 #[inline(always)]
 pub fn strain<T: Real>(h: &[T; 4]) -> [T; 3] {
-    if const { T::LANES == 1 } { out_of_line(|| strain_inline(h)) } else { strain_inline(h) }
-}
-
-#[inline(always)]
-fn strain_inline<T: Real>(h: &[T; 4]) -> [T; 3] {
-    let p = parts(h);
-    let a = log1p(h[0].fma(h[3], h[0] + h[3]) - h[1] * h[2]).scale(0.5);
-    let difference = (p.b * p.d).scale(0.5);
-    [a + difference, a - difference, p.b * p.s]
+    shared::<T, _>(
+        #[inline(always)]
+        || {
+            let p = parts(h);
+            let a = log1p(h[0].fma(h[3], h[0] + h[3]) - h[1] * h[2]).scale(0.5);
+            let difference = (p.b * p.d).scale(0.5);
+            [a + difference, a - difference, p.b * p.s]
+        },
+    )
 }
 
 /// Derivative by (c, d, s) of `t : E` for a fixed stress `t`.
@@ -134,30 +134,29 @@ pub fn second_piola<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 3] {
 /// Stress conjugate to the gradient.
 #[inline(always)]
 pub fn pull<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 4] {
-    if const { T::LANES == 1 } { out_of_line(|| pull_inline(h, t)) } else { pull_inline(h, t) }
-}
-
-#[inline(always)]
-fn pull_inline<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 4] {
-    let g = gradient(&parts(h), t);
-    let y = slopes(h);
-    let mut p = [T::zero(); 4];
-    for i in 0..4 {
-        for r in 0..3 {
-            p[i] = g[r].fma(y[r][i], p[i]);
-        }
-    }
-    p
+    shared::<T, _>(
+        #[inline(always)]
+        || {
+            let g = gradient(&parts(h), t);
+            let y = slopes(h);
+            let mut p = [T::zero(); 4];
+            for i in 0..4 {
+                for r in 0..3 {
+                    p[i] = g[r].fma(y[r][i], p[i]);
+                }
+            }
+            p
+        },
+    )
 }
 
 /// Derivative of [`pull`] where the stress follows the strain with the tangent `tangent`.
 #[inline(always)]
 pub fn tangent<T: Real>(h: &[T; 4], t: &[T; 3], tangent: &Mat<T, 3>) -> Mat<T, 4> {
-    if const { T::LANES == 1 } {
-        out_of_line(|| tangent_inline(h, t, tangent))
-    } else {
-        tangent_inline(h, t, tangent)
-    }
+    shared::<T, _>(
+        #[inline(always)]
+        || tangent_inline(h, t, tangent),
+    )
 }
 
 #[inline(always)]

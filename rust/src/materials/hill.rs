@@ -14,8 +14,8 @@
 use super::hardening::{BackStress, Isotropic};
 use super::material::{Material, Plane, PointState, Response, TensorOutput, broadcast};
 use super::mises::{MAX_BACK, ROUNDING};
-use crate::base::Real;
 use crate::base::small::Mat;
+use crate::base::{Real, shared_dual};
 
 /// Iterations of the scalar equation, and relative error after which one more step is exact: as
 /// in [`super::mises`].
@@ -101,49 +101,67 @@ impl Hill {
         p: T,
         dp: T,
     ) -> Trial<T> {
-        let o = T::zero();
-        let (sy, h) = self.isotropic.at(p + dp);
-        let r = sy.recip();
-        let g = dp * r;
-        let dg = (T::one() - g * h) * r;
-        let (mut modulus, mut d_modulus) = (o, o);
-        let (mut shift, mut d_shift) = ([o; 3], [o; 3]);
-        for (b, alpha) in self.back.iter().zip(old) {
-            let (kept, d_kept) = b.kept(dp);
-            modulus = kept.fma(T::real(b.modulus), modulus);
-            d_modulus = d_kept.fma(T::real(b.modulus), d_modulus);
-            for k in 0..3 {
-                shift[k] = kept.fma(alpha[k], shift[k]);
-                d_shift[k] = d_kept.fma(alpha[k], d_shift[k]);
-            }
-        }
-        let divisor = g.fma(modulus, T::one());
-        let d_divisor = dg.fma(modulus, g * d_modulus);
-        let b = self.inverse(g, divisor);
-        let by = |v: &[T; 2]| [b[0][0] * v[0] + b[0][1] * v[1], b[1][0] * v[0] + b[1][1] * v[1]];
-        let by_shear = g.fma(T::real(self.a_shear), divisor).recip();
-        let n = by(&[normal[0] - shift[0], normal[1] - shift[1]]);
-        let s = (shear - shift[2]) * by_shear;
-        let [fx, fy] = times(&self.a, &n);
-        let flow = [fx, fy, s.scale(self.a_shear)];
-        let [x, y] = by(&[fx, fy]);
-        let along = [x, y, flow[2] * by_shear];
-        // Loss of relative stress by the step.
-        let loss = |k: usize, v: T| d_divisor.fma(v, d_shift[k]) + dg * flow[k];
-        let lost = by(&[loss(0, n[0]), loss(1, n[1])]);
-        let lost_shear = loss(2, s) * by_shear;
-        let q = self.equivalent(&n, s).max(T::real(f64::MIN_POSITIVE));
-        let inverse = q.recip();
-        let w = times(&self.square, &n);
-        let along_lost =
-            w[0] * lost[0] + w[1] * lost[1] + (s * lost_shear).scale(self.square_shear);
-        let dq = -(along_lost * inverse);
-        let [rx, ry] = times(&self.a, &[dg * n[0] - g * lost[0], dg * n[1] - g * lost[1]]);
-        let removed = [rx, ry, (dg * s - g * lost_shear).scale(self.a_shear)];
-        let value = (sy - q) * inverse;
-        let derivative = (h - sy * dq * inverse) * inverse;
-        let slope = h - dq;
-        Trial { g, divisor, normal: n, shear: s, flow, along, removed, q, slope, value, derivative }
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let o = T::zero();
+                let (sy, h) = self.isotropic.at(p + dp);
+                let r = sy.recip();
+                let g = dp * r;
+                let dg = (T::one() - g * h) * r;
+                let (mut modulus, mut d_modulus) = (o, o);
+                let (mut shift, mut d_shift) = ([o; 3], [o; 3]);
+                for (b, alpha) in self.back.iter().zip(old) {
+                    let (kept, d_kept) = b.kept(dp);
+                    modulus = kept.fma(T::real(b.modulus), modulus);
+                    d_modulus = d_kept.fma(T::real(b.modulus), d_modulus);
+                    for k in 0..3 {
+                        shift[k] = kept.fma(alpha[k], shift[k]);
+                        d_shift[k] = d_kept.fma(alpha[k], d_shift[k]);
+                    }
+                }
+                let divisor = g.fma(modulus, T::one());
+                let d_divisor = dg.fma(modulus, g * d_modulus);
+                let b = self.inverse(g, divisor);
+                let by =
+                    |v: &[T; 2]| [b[0][0] * v[0] + b[0][1] * v[1], b[1][0] * v[0] + b[1][1] * v[1]];
+                let by_shear = g.fma(T::real(self.a_shear), divisor).recip();
+                let n = by(&[normal[0] - shift[0], normal[1] - shift[1]]);
+                let s = (shear - shift[2]) * by_shear;
+                let [fx, fy] = times(&self.a, &n);
+                let flow = [fx, fy, s.scale(self.a_shear)];
+                let [x, y] = by(&[fx, fy]);
+                let along = [x, y, flow[2] * by_shear];
+                // Loss of relative stress by the step.
+                let loss = |k: usize, v: T| d_divisor.fma(v, d_shift[k]) + dg * flow[k];
+                let lost = by(&[loss(0, n[0]), loss(1, n[1])]);
+                let lost_shear = loss(2, s) * by_shear;
+                let q = self.equivalent(&n, s).max(T::real(f64::MIN_POSITIVE));
+                let inverse = q.recip();
+                let w = times(&self.square, &n);
+                let along_lost =
+                    w[0] * lost[0] + w[1] * lost[1] + (s * lost_shear).scale(self.square_shear);
+                let dq = -(along_lost * inverse);
+                let [rx, ry] = times(&self.a, &[dg * n[0] - g * lost[0], dg * n[1] - g * lost[1]]);
+                let removed = [rx, ry, (dg * s - g * lost_shear).scale(self.a_shear)];
+                let value = (sy - q) * inverse;
+                let derivative = (h - sy * dq * inverse) * inverse;
+                let slope = h - dq;
+                Trial {
+                    g,
+                    divisor,
+                    normal: n,
+                    shear: s,
+                    flow,
+                    along,
+                    removed,
+                    q,
+                    slope,
+                    value,
+                    derivative,
+                }
+            },
+        )
     }
 
     /// Step in the lanes that yield; also the lanes in which it did not settle.

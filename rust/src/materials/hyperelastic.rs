@@ -8,9 +8,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::material::{Material, Plane, PointState, Response, SolidResponse};
-use crate::base::Real;
 use crate::base::jet::{Jet, PAIRS};
 use crate::base::small::Mat;
+use crate::base::{Real, shared};
 use std::fmt::Debug;
 
 /// Iterations for the thickness strain in plane stress.
@@ -33,22 +33,27 @@ impl<T: Real> Stretches<T> {
     /// 3: to all digits of a small one, of second order in the strain.
     #[inline(always)]
     pub fn powers(&self, alpha: f64) -> Jet<T> {
-        let root = self.mu.v.scale(alpha).exp();
-        let (p, q) = (root.scale(2.0), (root * root).recip());
-        let (a2, two, three) = (alpha * alpha, T::real(2.0), T::real(3.0));
-        let [c_m1, c1, c2] = cosh_root_m1(self.rho.v.scale(a2));
-        let c = c_m1 + T::one();
-        let (plane, slope) = (p * c, p * c1.scale(a2));
-        // 2 (g + 1) + (g + 1)^-2 - 3 = g^2 (3 + 2 g) / (g + 1)^2
-        let grown = self.mu.v.scale(alpha).exp_m1();
-        let stretched = grown * grown * q * grown.fma(two, three);
-        let mut y = Jet::constant(p.fma(c_m1, stretched));
-        y.d[0] = (plane - q.scale(2.0)).scale(alpha);
-        y.d[1] = slope;
-        y.h[0] = (plane + q.scale(4.0)).scale(a2);
-        y.h[1] = slope.scale(alpha);
-        y.h[3] = p * c2.scale(a2 * a2);
-        y
+        shared::<T, _>(
+            #[inline(always)]
+            || {
+                let root = self.mu.v.scale(alpha).exp();
+                let (p, q) = (root.scale(2.0), (root * root).recip());
+                let (a2, two, three) = (alpha * alpha, T::real(2.0), T::real(3.0));
+                let [c_m1, c1, c2] = cosh_root_m1(self.rho.v.scale(a2));
+                let c = c_m1 + T::one();
+                let (plane, slope) = (p * c, p * c1.scale(a2));
+                // 2 (g + 1) + (g + 1)^-2 - 3 = g^2 (3 + 2 g) / (g + 1)^2
+                let grown = self.mu.v.scale(alpha).exp_m1();
+                let stretched = grown * grown * q * grown.fma(two, three);
+                let mut y = Jet::constant(p.fma(c_m1, stretched));
+                y.d[0] = (plane - q.scale(2.0)).scale(alpha);
+                y.d[1] = slope;
+                y.h[0] = (plane + q.scale(4.0)).scale(a2);
+                y.h[1] = slope.scale(alpha);
+                y.h[3] = p * c2.scale(a2 * a2);
+                y
+            },
+        )
     }
 
     /// The first invariant of the isochoric `C`, less 3.
@@ -66,22 +71,27 @@ impl<T: Real> Stretches<T> {
     /// `sum (J - 1)^(2 i) / D_i`; a zero adds nothing.
     #[inline(always)]
     pub fn volume(&self, d: &[f64]) -> Jet<T> {
-        let mut w = Jet::zero();
-        if d.iter().all(|&d| d == 0.0) {
-            return w;
-        }
-        let grown = self.theta.exp(1.0).plus(-1.0);
-        let square = grown * grown;
-        let mut power = square;
-        for (i, &d) in d.iter().enumerate() {
-            if i > 0 {
-                power = power * square;
-            }
-            if d != 0.0 {
-                w += power.scale(1.0 / d);
-            }
-        }
-        w
+        shared::<T, _>(
+            #[inline(always)]
+            || {
+                let mut w = Jet::zero();
+                if d.iter().all(|&d| d == 0.0) {
+                    return w;
+                }
+                let grown = self.theta.exp(1.0).plus(-1.0);
+                let square = grown * grown;
+                let mut power = square;
+                for (i, &d) in d.iter().enumerate() {
+                    if i > 0 {
+                        power = power * square;
+                    }
+                    if d != 0.0 {
+                        w += power.scale(1.0 / d);
+                    }
+                }
+                w
+            },
+        )
     }
 }
 
@@ -212,43 +222,51 @@ fn derivatives<T: Real>(
     mu: [f64; 4],
     theta: [f64; 4],
 ) -> SolidResponse<T> {
-    let mut slopes = [[T::zero(); 4], [d, -d, s, T::zero()], [T::zero(); 4]];
-    for i in 0..4 {
-        slopes[0][i] = T::real(mu[i]);
-        slopes[2][i] = T::real(theta[i]);
-    }
-    let mut stress = [T::zero(); 4];
-    let mut tangent = [[T::zero(); 4]; 4];
-    for i in 0..4 {
-        for (slope, by) in slopes.iter().zip(w.d) {
-            stress[i] = slope[i].fma(by, stress[i]);
-        }
-    }
-    for ((a, b), h) in PAIRS.into_iter().zip(w.h) {
-        for i in 0..4 {
-            for j in 0..4 {
-                let mut both = slopes[a][i] * slopes[b][j];
-                if a != b {
-                    both = slopes[b][i].fma(slopes[a][j], both);
-                }
-                tangent[i][j] = h.fma(both, tangent[i][j]);
+    shared::<T, _>(
+        #[inline(always)]
+        || {
+            let mut slopes = [[T::zero(); 4], [d, -d, s, T::zero()], [T::zero(); 4]];
+            for i in 0..4 {
+                slopes[0][i] = T::real(mu[i]);
+                slopes[2][i] = T::real(theta[i]);
             }
-        }
-    }
-    // Second derivatives of the squared radius.
-    let half = w.d[1].scale(0.5);
-    tangent[0][0] += half;
-    tangent[1][1] += half;
-    tangent[2][2] += half;
-    tangent[0][1] -= half;
-    tangent[1][0] -= half;
-    SolidResponse { stress, tangent, failed: T::none() }
+            let mut stress = [T::zero(); 4];
+            let mut tangent = [[T::zero(); 4]; 4];
+            for i in 0..4 {
+                for (slope, by) in slopes.iter().zip(w.d) {
+                    stress[i] = slope[i].fma(by, stress[i]);
+                }
+            }
+            for ((a, b), h) in PAIRS.into_iter().zip(w.h) {
+                for i in 0..4 {
+                    for j in 0..4 {
+                        let mut both = slopes[a][i] * slopes[b][j];
+                        if a != b {
+                            both = slopes[b][i].fma(slopes[a][j], both);
+                        }
+                        tangent[i][j] = h.fma(both, tangent[i][j]);
+                    }
+                }
+            }
+            // Second derivatives of the squared radius.
+            let half = w.d[1].scale(0.5);
+            tangent[0][0] += half;
+            tangent[1][1] += half;
+            tangent[2][2] += half;
+            tangent[0][1] -= half;
+            tangent[1][0] -= half;
+            SolidResponse { stress, tangent, failed: T::none() }
+        },
+    )
 }
 
 impl<W: Energy> Hyperelastic<W> {
     #[inline(always)]
     fn density<T: Real>(&self, parts: [T; 3], z: T, largest: T) -> Jet<T> {
-        self.energy.density(&stretches(parts, z), largest)
+        shared::<T, _>(
+            #[inline(always)]
+            || self.energy.density(&stretches(parts, z), largest),
+        )
     }
 
     /// The largest energy of the shape so far.

@@ -17,8 +17,8 @@
 
 use super::hardening::{BackStress, Isotropic};
 use super::material::{Material, Plane, PointState, Response, TensorOutput, broadcast, in_plane};
-use crate::base::Real;
 use crate::base::small::Mat;
+use crate::base::{Real, shared_dual};
 use std::fmt::Debug;
 
 /// Most back-stresses of a material.
@@ -205,41 +205,46 @@ impl<F: Flow> J2<F> {
         old: &[[T; 3]; MAX_BACK],
         dp: T,
     ) -> Trial<T> {
-        let (sy, h) = self.flow_stress.after(start, dp);
-        let r = sy.recip();
-        let g = dp.scale(1.5) * r;
-        let dg = (T::real(1.5) - g * h) * r;
-        let (mut modulus, mut d_modulus) = (T::zero(), T::zero());
-        let (mut shift, mut d_shift) = ([T::zero(); 3], [T::zero(); 3]);
-        for (b, beta) in self.back.iter().zip(old) {
-            let (kept, d_kept) = b.kept(dp);
-            modulus = kept.fma(T::real(b.modulus * 2.0 / 3.0), modulus);
-            d_modulus = d_kept.fma(T::real(b.modulus * 2.0 / 3.0), d_modulus);
-            for k in 0..3 {
-                shift[k] = kept.fma(beta[k], shift[k]);
-                d_shift[k] = d_kept.fma(beta[k], d_shift[k]);
-            }
-        }
-        let (mut eta, mut d_eta) = ([T::zero(); 3], [T::zero(); 3]);
-        let mut divisor = [T::zero(); 3];
-        for k in 0..3 {
-            let stiff = T::real(self.relief[k] * self.flow[k]) + modulus;
-            divisor[k] = g.fma(stiff, T::one());
-            let inverse = divisor[k].recip();
-            eta[k] = (y[k] - shift[k]) * inverse;
-            let d = dg.fma(stiff, g * d_modulus);
-            d_eta[k] = -(eta[k].fma(d, d_shift[k])) * inverse;
-        }
-        let q = self.equivalent(&eta).max(T::real(f64::MIN_POSITIVE));
-        let inverse = q.recip();
-        let mut dq = T::zero();
-        for k in 0..3 {
-            dq = (eta[k] * d_eta[k]).fma(T::real(1.5 * self.norm[k]), dq);
-        }
-        dq = dq * inverse;
-        let value = (sy - q) * inverse;
-        let derivative = (h - sy * dq * inverse) * inverse;
-        Trial { dp, sy, g, dg, eta, d_eta, divisor, q, slope: h - dq, value, derivative }
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let (sy, h) = self.flow_stress.after(start, dp);
+                let r = sy.recip();
+                let g = dp.scale(1.5) * r;
+                let dg = (T::real(1.5) - g * h) * r;
+                let (mut modulus, mut d_modulus) = (T::zero(), T::zero());
+                let (mut shift, mut d_shift) = ([T::zero(); 3], [T::zero(); 3]);
+                for (b, beta) in self.back.iter().zip(old) {
+                    let (kept, d_kept) = b.kept(dp);
+                    modulus = kept.fma(T::real(b.modulus * 2.0 / 3.0), modulus);
+                    d_modulus = d_kept.fma(T::real(b.modulus * 2.0 / 3.0), d_modulus);
+                    for k in 0..3 {
+                        shift[k] = kept.fma(beta[k], shift[k]);
+                        d_shift[k] = d_kept.fma(beta[k], d_shift[k]);
+                    }
+                }
+                let (mut eta, mut d_eta) = ([T::zero(); 3], [T::zero(); 3]);
+                let mut divisor = [T::zero(); 3];
+                for k in 0..3 {
+                    let stiff = T::real(self.relief[k] * self.flow[k]) + modulus;
+                    divisor[k] = g.fma(stiff, T::one());
+                    let inverse = divisor[k].recip();
+                    eta[k] = (y[k] - shift[k]) * inverse;
+                    let d = dg.fma(stiff, g * d_modulus);
+                    d_eta[k] = -(eta[k].fma(d, d_shift[k])) * inverse;
+                }
+                let q = self.equivalent(&eta).max(T::real(f64::MIN_POSITIVE));
+                let inverse = q.recip();
+                let mut dq = T::zero();
+                for k in 0..3 {
+                    dq = (eta[k] * d_eta[k]).fma(T::real(1.5 * self.norm[k]), dq);
+                }
+                dq = dq * inverse;
+                let value = (sy - q) * inverse;
+                let derivative = (h - sy * dq * inverse) * inverse;
+                Trial { dp, sy, g, dg, eta, d_eta, divisor, q, slope: h - dq, value, derivative }
+            },
+        )
     }
 
     /// Step of the equivalent plastic strain in the lanes that yield, by Newton's method from
@@ -256,59 +261,64 @@ impl<F: Flow> J2<F> {
         excess: T,
         yields: T::Mask,
     ) -> (T, T::Mask) {
-        let mut softest = f64::MAX;
-        for k in 0..3 {
-            if self.norm[k] > 0.0 {
-                softest = softest.min(self.relief[k] * self.flow[k]);
-            }
-        }
-        // Recall can only bring back what the old back-stresses hold.
-        let mut most = excess;
-        if F::STEEP {
-            // What softens may end below the stress where it began.
-            most += self.flow_stress.limit(start);
-        }
-        for (b, beta) in self.back.iter().zip(old) {
-            if b.recall > 0.0 {
-                most += self.equivalent(beta);
-            }
-        }
-        let (mut low, mut high) = (T::zero(), most.scale((1.0 + 1e-9) / (1.5 * softest)));
-        let mut dp = T::zero();
-        if F::STEEP {
-            // Lanes that do not flow need a number with a logarithm.
-            high = T::select(yields, high, T::one());
-            dp = high;
-            low = T::real(LEAST_STEP).min(high);
-        }
-        let mut open = T::zero();
-        for _ in 0..MAX_ITERATIONS {
-            let at = self.trial(y, start, old, dp);
-            let settled = at.value.abs().lt(T::real(TOLERANCE));
-            let short = at.value.lt(T::zero());
-            low = T::select(short, dp, low);
-            high = T::select(short, high, dp);
-            if F::STEEP {
-                let ratio = at.value + T::one();
-                let step = ratio.ln() * ratio / (at.derivative * dp);
-                let step = step.max(T::real(-LONGEST)).min(T::real(LONGEST));
-                let next = dp * (-step).exp();
-                let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
-                let middle = (low.sqrt() * high.sqrt()).max(low);
-                dp = T::select(yields, T::select(inside, next, middle), T::one());
-            } else {
-                let next = dp - at.value / at.derivative;
-                let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
-                let next = T::select(inside, next, (low + high).scale(0.5));
-                dp = T::select(yields, next, T::zero());
-            }
-            let rest = T::select(settled, T::zero(), T::one());
-            open = T::select(yields, rest, T::zero());
-            if !T::any(T::real(0.5).lt(open)) {
-                break;
-            }
-        }
-        (T::select(yields, dp, T::zero()), T::real(0.5).lt(open))
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                let mut softest = f64::MAX;
+                for k in 0..3 {
+                    if self.norm[k] > 0.0 {
+                        softest = softest.min(self.relief[k] * self.flow[k]);
+                    }
+                }
+                // Recall can only bring back what the old back-stresses hold.
+                let mut most = excess;
+                if F::STEEP {
+                    // What softens may end below the stress where it began.
+                    most += self.flow_stress.limit(start);
+                }
+                for (b, beta) in self.back.iter().zip(old) {
+                    if b.recall > 0.0 {
+                        most += self.equivalent(beta);
+                    }
+                }
+                let (mut low, mut high) = (T::zero(), most.scale((1.0 + 1e-9) / (1.5 * softest)));
+                let mut dp = T::zero();
+                if F::STEEP {
+                    // Lanes that do not flow need a number with a logarithm.
+                    high = T::select(yields, high, T::one());
+                    dp = high;
+                    low = T::real(LEAST_STEP).min(high);
+                }
+                let mut open = T::zero();
+                for _ in 0..MAX_ITERATIONS {
+                    let at = self.trial(y, start, old, dp);
+                    let settled = at.value.abs().lt(T::real(TOLERANCE));
+                    let short = at.value.lt(T::zero());
+                    low = T::select(short, dp, low);
+                    high = T::select(short, high, dp);
+                    if F::STEEP {
+                        let ratio = at.value + T::one();
+                        let step = ratio.ln() * ratio / (at.derivative * dp);
+                        let step = step.max(T::real(-LONGEST)).min(T::real(LONGEST));
+                        let next = dp * (-step).exp();
+                        let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
+                        let middle = (low.sqrt() * high.sqrt()).max(low);
+                        dp = T::select(yields, T::select(inside, next, middle), T::one());
+                    } else {
+                        let next = dp - at.value / at.derivative;
+                        let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
+                        let next = T::select(inside, next, (low + high).scale(0.5));
+                        dp = T::select(yields, next, T::zero());
+                    }
+                    let rest = T::select(settled, T::zero(), T::one());
+                    open = T::select(yields, rest, T::zero());
+                    if !T::any(T::real(0.5).lt(open)) {
+                        break;
+                    }
+                }
+                (T::select(yields, dp, T::zero()), T::real(0.5).lt(open))
+            },
+        )
     }
 
     /// [`J2::solve`]; where numbers carry derivatives, of plain numbers, and these follow by one step
@@ -338,28 +348,34 @@ impl<F: Flow> J2<F> {
     /// Elastic tangent less the plastic part, symmetric.
     #[inline(always)]
     fn tangent<T: Real>(&self, at: &Trial<T>, yields: T::Mask) -> Mat<T, 3> {
-        const WEIGHT: [f64; 3] = [0.5, 0.5, 1.0];
-        let scale = T::select(yields, at.slope.recip(), T::zero());
-        let to_norm = at.q.recip().scale(1.5);
-        let (mut left, mut right) = ([T::zero(); 3], [T::zero(); 3]);
-        let mut b = [[T::zero(); 3]; 3];
-        for k in 0..3 {
-            let inverse = at.divisor[k].recip();
-            let stiff = self.relief[k] * self.flow[k];
-            let rest = T::one() - at.g.scale(stiff) * inverse;
-            b[k][k] = rest.scale(WEIGHT[k] * self.elastic[k]);
-            left[k] = at.dg.fma(at.eta[k], at.g * at.d_eta[k]).scale(WEIGHT[k] * stiff);
-            right[k] = (at.eta[k] * inverse * to_norm).scale(self.norm[k] * self.elastic[k]);
-            right[k] = right[k] * scale;
-        }
-        b[0][0] += T::real(0.5 * self.volume);
-        for i in 0..3 {
-            for j in i..3 {
-                let sum = left[i].fma(right[j], left[j] * right[i]);
-                b[i][j] = sum.fma(T::real(-0.5), b[i][j]);
-            }
-        }
-        in_plane(&b)
+        shared_dual::<T, _>(
+            #[inline(always)]
+            || {
+                const WEIGHT: [f64; 3] = [0.5, 0.5, 1.0];
+                let scale = T::select(yields, at.slope.recip(), T::zero());
+                let to_norm = at.q.recip().scale(1.5);
+                let (mut left, mut right) = ([T::zero(); 3], [T::zero(); 3]);
+                let mut b = [[T::zero(); 3]; 3];
+                for k in 0..3 {
+                    let inverse = at.divisor[k].recip();
+                    let stiff = self.relief[k] * self.flow[k];
+                    let rest = T::one() - at.g.scale(stiff) * inverse;
+                    b[k][k] = rest.scale(WEIGHT[k] * self.elastic[k]);
+                    left[k] = at.dg.fma(at.eta[k], at.g * at.d_eta[k]).scale(WEIGHT[k] * stiff);
+                    right[k] =
+                        (at.eta[k] * inverse * to_norm).scale(self.norm[k] * self.elastic[k]);
+                    right[k] = right[k] * scale;
+                }
+                b[0][0] += T::real(0.5 * self.volume);
+                for i in 0..3 {
+                    for j in i..3 {
+                        let sum = left[i].fma(right[j], left[j] * right[i]);
+                        b[i][j] = sum.fma(T::real(-0.5), b[i][j]);
+                    }
+                }
+                in_plane(&b)
+            },
+        )
     }
 
     /// A tensor of the state as 11, 22, 33, 12.

@@ -15,8 +15,8 @@
 
 use super::law::{update, update_solid};
 use super::material::{Material, Plane, PointState, Response, SolidResponse};
-use crate::base::Real;
 use crate::base::small::Mat;
+use crate::base::{Real, shared};
 
 /// Members of the state: work of the stress, strain and stress (xx, yy, xy, zz), stress of the
 /// parent, then that of each term.
@@ -177,34 +177,39 @@ impl Viscoelastic {
         state: &mut PointState<'_>,
         relaxations: &[Relaxation],
     ) -> Relaxed<T> {
-        let o = T::zero();
-        let solid = self.of_parent(e, state);
-        let mut change = solid.stress;
-        for (i, c) in change.iter_mut().enumerate() {
-            *c -= state.get(PARENT + i);
-        }
-        let [mut by, mut of_mean] = self.lasting();
-        let mut stress = shares(&solid.stress, by, of_mean);
-        for (n, (term, over)) in self.terms.iter().zip(relaxations).enumerate() {
-            let [g, k] = self.of_term(term);
-            let added = shares(&change, g * over.added, k * over.added);
-            for i in 0..4 {
-                let before: T = state.get(TERMS + 4 * n + i);
-                stress[i] += before.fma(T::real(over.left), added[i]);
-            }
-            by += g * over.added;
-            of_mean += k * over.added;
-        }
-        let mut tangent = [[o; 4]; 4];
-        for j in 0..4 {
-            let column = std::array::from_fn(|i| solid.tangent[i][j]);
-            let scaled = shares(&column, by, of_mean);
-            for i in 0..4 {
-                tangent[i][j] += scaled[i].scale(0.5);
-                tangent[j][i] += scaled[i].scale(0.5);
-            }
-        }
-        Relaxed { stress, tangent, parent: solid.stress, failed: solid.failed }
+        shared::<T, _>(
+            #[inline(always)]
+            || {
+                let o = T::zero();
+                let solid = self.of_parent(e, state);
+                let mut change = solid.stress;
+                for (i, c) in change.iter_mut().enumerate() {
+                    *c -= state.get(PARENT + i);
+                }
+                let [mut by, mut of_mean] = self.lasting();
+                let mut stress = shares(&solid.stress, by, of_mean);
+                for (n, (term, over)) in self.terms.iter().zip(relaxations).enumerate() {
+                    let [g, k] = self.of_term(term);
+                    let added = shares(&change, g * over.added, k * over.added);
+                    for i in 0..4 {
+                        let before: T = state.get(TERMS + 4 * n + i);
+                        stress[i] += before.fma(T::real(over.left), added[i]);
+                    }
+                    by += g * over.added;
+                    of_mean += k * over.added;
+                }
+                let mut tangent = [[o; 4]; 4];
+                for j in 0..4 {
+                    let column = std::array::from_fn(|i| solid.tangent[i][j]);
+                    let scaled = shares(&column, by, of_mean);
+                    for i in 0..4 {
+                        tangent[i][j] += scaled[i].scale(0.5);
+                        tangent[j][i] += scaled[i].scale(0.5);
+                    }
+                }
+                Relaxed { stress, tangent, parent: solid.stress, failed: solid.failed }
+            },
+        )
     }
 
     /// Energy of the stress of a term: that of an elastic body with its share of the moduli.
@@ -230,25 +235,30 @@ impl Viscoelastic {
         state: &mut PointState<'_>,
         relaxations: &[Relaxation],
     ) {
-        let mut change = at.parent;
-        let mut work: T = state.get(WORK);
-        for i in 0..4 {
-            change[i] -= state.get(PARENT + i);
-            let (e0, s0): (T, T) = (state.get(STRAIN + i), state.get(STRESS + i));
-            work += ((at.stress[i] + s0) * (e[i] - e0)).scale(0.5);
-            state.set(PARENT + i, at.parent[i]);
-            state.set(STRAIN + i, e[i]);
-            state.set(STRESS + i, at.stress[i]);
-        }
-        state.set(WORK, work);
-        for (n, (term, over)) in self.terms.iter().zip(relaxations).enumerate() {
-            let [g, k] = self.of_term(term);
-            let added = shares(&change, g * over.added, k * over.added);
-            for i in 0..4 {
-                let before: T = state.get(TERMS + 4 * n + i);
-                state.set(TERMS + 4 * n + i, before.fma(T::real(over.left), added[i]));
-            }
-        }
+        shared::<T, _>(
+            #[inline(always)]
+            || {
+                let mut change = at.parent;
+                let mut work: T = state.get(WORK);
+                for i in 0..4 {
+                    change[i] -= state.get(PARENT + i);
+                    let (e0, s0): (T, T) = (state.get(STRAIN + i), state.get(STRESS + i));
+                    work += ((at.stress[i] + s0) * (e[i] - e0)).scale(0.5);
+                    state.set(PARENT + i, at.parent[i]);
+                    state.set(STRAIN + i, e[i]);
+                    state.set(STRESS + i, at.stress[i]);
+                }
+                state.set(WORK, work);
+                for (n, (term, over)) in self.terms.iter().zip(relaxations).enumerate() {
+                    let [g, k] = self.of_term(term);
+                    let added = shares(&change, g * over.added, k * over.added);
+                    for i in 0..4 {
+                        let before: T = state.get(TERMS + 4 * n + i);
+                        state.set(TERMS + 4 * n + i, before.fma(T::real(over.left), added[i]));
+                    }
+                }
+            },
+        );
     }
 
     #[inline(always)]

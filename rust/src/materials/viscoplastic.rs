@@ -15,7 +15,7 @@
 use super::hardening::Isotropic;
 use super::material::PointState;
 use super::mises::{Flow, J2, LEAST_STEP};
-use crate::base::Real;
+use crate::base::{Real, shared};
 
 pub type Viscoplastic = J2<RateFlow>;
 
@@ -334,37 +334,42 @@ impl RateFlow {
     /// Flow stress without softening, and its derivative.
     #[inline(always)]
     fn cold<T: Real>(&self, start: &Start<T>, dp: T) -> (T, T) {
-        let (y, h) = self.hardening.at(start.p + dp);
-        match &self.rate {
-            Rate::Power { rate, exponent } => {
-                let x = power(dp.scale(1.0 / (rate * start.time)), 1.0 / exponent);
-                let slope = y * x.scale(1.0 / exponent) / dp;
-                (x.fma(y, y), x.fma(h, h) + slope)
-            }
-            Rate::Logarithm { factor, rate } => {
-                let ratio = dp.scale(1.0 / (rate * start.time));
-                let slow = ratio.lt(T::one());
-                let l = ratio.max(T::one()).ln().scale(*factor);
-                let slope = T::select(slow, T::zero(), y.scale(*factor) / dp);
-                (l.fma(y, y), l.fma(h, h) + slope)
-            }
-            Rate::Ratio { rate, ratio } => {
-                let at = dp.scale(1.0 / start.time);
-                let (r, slope) = Rate::between(rate, at, |k| T::real(ratio[k]));
-                (y * r, (y * slope).fma(T::real(1.0 / start.time), h * r))
-            }
-            Rate::Curves { rate, curve } => {
-                let (at, p) = (dp.scale(1.0 / start.time), start.p + dp);
-                let (y, slope) = Rate::between(rate, at, |k| curve[k].at(p).0);
-                let (h, _) = Rate::between(rate, at, |k| curve[k].at(p).1);
-                (y, slope.fma(T::real(1.0 / start.time), h))
-            }
-            Rate::Creep { .. } if start.creeps => {
-                let (over, slope) = self.overstress(start, dp);
-                (y + over, h + slope)
-            }
-            Rate::None | Rate::Creep { .. } => (y, h),
-        }
+        shared::<T, _>(
+            #[inline(always)]
+            || {
+                let (y, h) = self.hardening.at(start.p + dp);
+                match &self.rate {
+                    Rate::Power { rate, exponent } => {
+                        let x = power(dp.scale(1.0 / (rate * start.time)), 1.0 / exponent);
+                        let slope = y * x.scale(1.0 / exponent) / dp;
+                        (x.fma(y, y), x.fma(h, h) + slope)
+                    }
+                    Rate::Logarithm { factor, rate } => {
+                        let ratio = dp.scale(1.0 / (rate * start.time));
+                        let slow = ratio.lt(T::one());
+                        let l = ratio.max(T::one()).ln().scale(*factor);
+                        let slope = T::select(slow, T::zero(), y.scale(*factor) / dp);
+                        (l.fma(y, y), l.fma(h, h) + slope)
+                    }
+                    Rate::Ratio { rate, ratio } => {
+                        let at = dp.scale(1.0 / start.time);
+                        let (r, slope) = Rate::between(rate, at, |k| T::real(ratio[k]));
+                        (y * r, (y * slope).fma(T::real(1.0 / start.time), h * r))
+                    }
+                    Rate::Curves { rate, curve } => {
+                        let (at, p) = (dp.scale(1.0 / start.time), start.p + dp);
+                        let (y, slope) = Rate::between(rate, at, |k| curve[k].at(p).0);
+                        let (h, _) = Rate::between(rate, at, |k| curve[k].at(p).1);
+                        (y, slope.fma(T::real(1.0 / start.time), h))
+                    }
+                    Rate::Creep { .. } if start.creeps => {
+                        let (over, slope) = self.overstress(start, dp);
+                        (y + over, h + slope)
+                    }
+                    Rate::None | Rate::Creep { .. } => (y, h),
+                }
+            },
+        )
     }
 }
 
@@ -461,36 +466,41 @@ impl Flow for RateFlow {
     }
     #[inline(always)]
     fn after<T: Real>(&self, start: &Start<T>, dp: T) -> (T, T) {
-        let dp = dp.max(T::real(LEAST_STEP));
-        let (cold, slope) = self.cold(start, dp);
-        let Some(heat) = &self.heat else { return (cold, slope) };
-        if heat.share == 0.0 {
-            let left = heat.left(start.rise).0;
-            return (cold * left, slope * left);
-        }
-        // The work of the step is the mean of the stresses at both ends times the step.
-        let half = dp.scale(0.5 * heat.share);
-        let mut s = cold * heat.left(start.rise).0;
-        let (mut low, mut high) = (T::zero(), s);
-        for _ in 0..MAX_ITERATIONS {
-            let (left, by_rise) = heat.left(half.fma(start.begin + s, start.rise));
-            let excess = s - cold * left;
-            let above = T::zero().lt(excess);
-            high = T::select(above, s, high);
-            low = T::select(above, low, s);
-            let next = s - excess / (T::one() - cold * by_rise * half);
-            let settled = (next - s).abs().lt(s.scale(TOLERANCE));
-            let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
-            s = T::select(inside, next, (low + high).scale(0.5));
-            let open = T::select(settled, T::zero(), T::one());
-            if !T::any(T::real(0.5).lt(open)) {
-                break;
-            }
-        }
-        let (left, by_rise) = heat.left(half.fma(start.begin + s, start.rise));
-        let heating = (start.begin + s).scale(0.5 * heat.share);
-        let slope = slope * left + cold * by_rise * heating;
-        (s, slope / (T::one() - cold * by_rise * half))
+        shared::<T, _>(
+            #[inline(always)]
+            || {
+                let dp = dp.max(T::real(LEAST_STEP));
+                let (cold, slope) = self.cold(start, dp);
+                let Some(heat) = &self.heat else { return (cold, slope) };
+                if heat.share == 0.0 {
+                    let left = heat.left(start.rise).0;
+                    return (cold * left, slope * left);
+                }
+                // The work of the step is the mean of the stresses at both ends times the step.
+                let half = dp.scale(0.5 * heat.share);
+                let mut s = cold * heat.left(start.rise).0;
+                let (mut low, mut high) = (T::zero(), s);
+                for _ in 0..MAX_ITERATIONS {
+                    let (left, by_rise) = heat.left(half.fma(start.begin + s, start.rise));
+                    let excess = s - cold * left;
+                    let above = T::zero().lt(excess);
+                    high = T::select(above, s, high);
+                    low = T::select(above, low, s);
+                    let next = s - excess / (T::one() - cold * by_rise * half);
+                    let settled = (next - s).abs().lt(s.scale(TOLERANCE));
+                    let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
+                    s = T::select(inside, next, (low + high).scale(0.5));
+                    let open = T::select(settled, T::zero(), T::one());
+                    if !T::any(T::real(0.5).lt(open)) {
+                        break;
+                    }
+                }
+                let (left, by_rise) = heat.left(half.fma(start.begin + s, start.rise));
+                let heating = (start.begin + s).scale(0.5 * heat.share);
+                let slope = slope * left + cold * by_rise * heating;
+                (s, slope / (T::one() - cold * by_rise * half))
+            },
+        )
     }
     #[inline(always)]
     fn work<T: Real>(&self, start: &Start<T>, dp: T, end: T) -> T {
