@@ -43,7 +43,7 @@ pub fn add<T: Real, const N: usize, const M: usize>(
             out.force[a][i] = row[a][i].fma(force, out.force[a][i]);
         }
     }
-    if tangent {
+    if const { T::STIFFNESS } && tangent {
         for &(k, other) in with {
             add_product(&mut out.stiffness, row, other, k);
         }

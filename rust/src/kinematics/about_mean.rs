@@ -108,7 +108,7 @@ where
     where
         E: Element<N, M, A, Op<T> = Op>,
     {
-        if !E::ABOUT_MEAN || section.strain.is_linear() {
+        if const { !E::ABOUT_MEAN } || section.strain.is_linear() {
             return None;
         }
         let op = E::mean(x, prepared);

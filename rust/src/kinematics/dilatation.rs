@@ -56,7 +56,7 @@ impl<T: Real, const N: usize, const M: usize> Dilatation<T, N, M> {
     where
         E: Element<N, M, A>,
     {
-        if !(E::MEAN_DILATATION && section.mean_dilatation) {
+        if const { !E::MEAN_DILATATION } || !section.mean_dilatation {
             return None;
         }
         let o = T::zero();
@@ -78,7 +78,7 @@ impl<T: Real, const N: usize, const M: usize> Dilatation<T, N, M> {
             let (mut value, slope) = bar.kind.volume(&h);
             let slope = times(&slope, s.weight);
             let mut around = o;
-            if E::Op::<T>::HOOP {
+            if const { E::Op::<T>::HOOP } {
                 let [e, first, _] = bar.kind.hoop(s.op.drill(q));
                 value += e;
                 around = first * s.weight;

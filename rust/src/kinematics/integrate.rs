@@ -280,7 +280,7 @@ impl<T: Real> Around<T> {
     where
         Op: Operator<T, N, M>,
     {
-        if !Op::HOOP {
+        if const { !Op::HOOP } {
             return None;
         }
         let o = T::zero();
@@ -428,21 +428,31 @@ where
         let s = E::sample(x, &prepared, point);
         let w = s.weight * own.thickness::<T, N>(p, section);
         let h = gradient(&s, q, alpha);
-        let mut strain = match &about {
-            Some(about) => about.strain(&h),
-            None => section.strain.strain(&h),
+        let mut strain = if const { E::ABOUT_MEAN }
+            && let Some(about) = &about
+        {
+            about.strain(&h)
+        } else {
+            section.strain.strain(&h)
         };
         let mut around = Around::<T>::new::<E::Op<T>, N, M>(&s.op, q, section.strain);
-        if let Some(bar) = &bar {
-            match &mut around {
-                Some(around) => bar.apply_to_ring(&mut strain, &mut around.strain),
-                None => bar.apply(&mut strain),
+        if const { E::MEAN_DILATATION }
+            && let Some(bar) = &bar
+        {
+            if const { E::Op::<T>::HOOP }
+                && let Some(around) = &mut around
+            {
+                bar.apply_to_ring(&mut strain, &mut around.strain);
+            } else {
+                bar.apply(&mut strain);
             }
         }
         let strain = history.elastic(p, strain);
         let law = own.law::<T, N>(p, section);
         let mut answer;
-        if let Some(around) = &mut around {
+        if const { E::Op::<T>::HOOP }
+            && let Some(around) = &mut around
+        {
             if !history.initial.is_empty() {
                 around.strain -= history.initial_strain(p, 3);
             }
@@ -474,28 +484,43 @@ where
         }
         sums.failed = T::or(sums.failed, answer.failed);
         if section.finite {
-            let seen = if let Some(about) = &about { &about.h } else { &h };
+            let seen = if const { E::ABOUT_MEAN }
+                && let Some(about) = &about
+            {
+                &about.h
+            } else {
+                &h
+            };
             sums.failed = T::or(sums.failed, det(seen).lt(o));
-            if let Some(around) = &around {
+            if const { E::Op::<T>::HOOP }
+                && let Some(around) = &around
+            {
                 sums.failed = T::or(sums.failed, (around.w + T::one()).lt(o));
             }
         }
-        if let Some(bar) = &mut bar {
-            match &mut around {
-                Some(around) => {
-                    bar.split_ring_stress(&mut answer.stress, &mut around.stress, w);
-                }
-                None => bar.split_stress(&mut answer.stress, w),
+        if const { E::MEAN_DILATATION }
+            && let Some(bar) = &mut bar
+        {
+            if const { E::Op::<T>::HOOP }
+                && let Some(around) = &mut around
+            {
+                bar.split_ring_stress(&mut answer.stress, &mut around.stress, w);
+            } else {
+                bar.split_stress(&mut answer.stress, w);
             }
         }
-        let mut stress = match &about {
-            Some(about) => about.pull(&answer.stress),
-            None => section.strain.pull(&h, &answer.stress),
+        let mut stress = if const { E::ABOUT_MEAN }
+            && let Some(about) = &about
+        {
+            about.pull(&answer.stress)
+        } else {
+            section.strain.pull(&h, &answer.stress)
         };
         for v in &mut stress {
             *v = *v * w;
         }
-        if let Some(about) = &mut about
+        if const { E::ABOUT_MEAN }
+            && let Some(about) = &mut about
             && out.is_some()
         {
             for v in &mut answer.stress {
@@ -503,12 +528,14 @@ where
             }
             about.keep(&h, &answer.stress, &stress);
         }
-        let mut gamma = if E::Op::<T>::DRILL { w.scale(parameter) } else { o };
+        let mut gamma = if const { E::Op::<T>::DRILL } { w.scale(parameter) } else { o };
         let mut drill = o;
-        if let Some(around) = &around {
+        if const { E::Op::<T>::HOOP }
+            && let Some(around) = &around
+        {
             drill = around.stress * around.slope * w;
         }
-        if E::Op::<T>::DRILL {
+        if const { E::Op::<T>::DRILL } {
             drill = s.op.drill(q);
             for m in 0..A {
                 for i in 0..2 {
@@ -527,16 +554,20 @@ where
                 for j in 0..2 {
                     *force = mode[j].fma(stress[2 * i + j], *force);
                 }
-                if E::Op::<T>::DRILL {
+                if const { E::Op::<T>::DRILL } {
                     *force = mode_drill(mode, i).fma(drill, *force);
                 }
             }
         }
-        if !matrices {
+        if const { A == 0 && !T::STIFFNESS } || !matrices {
             continue;
         }
-        if let Some(bar) = &mut bar {
-            if let Some(around) = &mut around {
+        if const { E::MEAN_DILATATION }
+            && let Some(bar) = &mut bar
+        {
+            if const { E::Op::<T>::HOOP }
+                && let Some(around) = &mut around
+            {
                 let mut d = around.join(&answer.tangent);
                 let (mixed, square) = Dilatation::<T, N, M>::split_ring_tangent(&mut d);
                 answer.tangent = around.part(&d);
@@ -549,20 +580,28 @@ where
         }
         // Derivative of the hoop force by the hoop stretch, and of the stress in the plane.
         let (mut coupling, mut by_hoop) = ([o; 4], [o; 3]);
-        if let Some(around) = &around {
+        if const { E::Op::<T>::HOOP }
+            && let Some(around) = &around
+        {
             let slope = around.slope;
             gamma = (around.square * slope).fma(slope, around.stress * around.curvature) * w;
             for r in 0..3 {
                 by_hoop[r] = around.column[r] * slope * w;
             }
-            coupling = match &about {
-                Some(about) => about.pull(&by_hoop),
-                None => section.strain.pull(&h, &by_hoop),
+            coupling = if const { E::ABOUT_MEAN }
+                && let Some(about) = &about
+            {
+                about.pull(&by_hoop)
+            } else {
+                section.strain.pull(&h, &by_hoop)
             };
         }
-        let mut a = match &about {
-            Some(about) => about.tangent(&answer.tangent),
-            None => section.strain.tangent(&h, &answer.stress, &answer.tangent),
+        let mut a = if const { E::ABOUT_MEAN }
+            && let Some(about) = &about
+        {
+            about.tangent(&answer.tangent)
+        } else {
+            section.strain.tangent(&h, &answer.stress, &answer.tangent)
         };
         for row in &mut a {
             for v in row {
@@ -570,7 +609,8 @@ where
             }
         }
         let mut by_mean = None;
-        if let Some(about) = &mut about
+        if const { E::ABOUT_MEAN }
+            && let Some(about) = &mut about
             && out.is_some()
         {
             for row in &mut answer.tangent {
@@ -582,9 +622,15 @@ where
             about.add(&s.op, &part);
             by_mean = Some(part.mixed);
         }
-        if tangent && let Some(out) = out.as_deref_mut() {
+        if const { T::STIFFNESS }
+            && tangent
+            && let Some(out) = out.as_deref_mut()
+        {
             s.op.add_stiffness(&a, gamma, &mut out.stiffness);
             s.op.add_coupling(&coupling, &mut out.stiffness);
+        }
+        if const { A == 0 } {
+            continue;
         }
         for m in 0..A {
             let square = s.modes[m][0].fma(s.modes[m][0], s.modes[m][1] * s.modes[m][1]);
@@ -604,7 +650,7 @@ where
                 for c in 0..4 {
                     t[c] = mode[0].fma(a[2 * i][c], mode[1] * a[2 * i + 1][c]);
                 }
-                let skew = if E::Op::<T>::HOOP {
+                let skew = if const { E::Op::<T>::HOOP } {
                     mode[0].fma(coupling[2 * i], mode[1] * coupling[2 * i + 1])
                 } else {
                     mode_drill(mode, i) * gamma
@@ -615,7 +661,7 @@ where
                         let other = &s.modes[n];
                         *k = other[0].fma(t[2 * j], *k);
                         *k = other[1].fma(t[2 * j + 1], *k);
-                        if E::Op::<T>::DRILL {
+                        if const { E::Op::<T>::DRILL } {
                             *k = skew.fma(mode_drill(other, j), *k);
                         }
                     }
@@ -626,18 +672,21 @@ where
             }
         }
     }
-    if let Some(about) = &about
+    if const { E::ABOUT_MEAN }
+        && let Some(about) = &about
         && let Some(out) = out.as_deref_mut()
     {
         about.finish_force(&mut out.force);
-        if tangent {
+        if const { T::STIFFNESS } && tangent {
             about.finish_stiffness(&mut out.stiffness);
         }
         for r in 0..2 * A {
             about.add_rows(&to_mean[r], &mut sums.coupling[r]);
         }
     }
-    if let Some(bar) = &bar {
+    if const { E::MEAN_DILATATION }
+        && let Some(bar) = &bar
+    {
         T::apart(FinishDilatation::<E, T, N, M, A> {
             bar,
             x,
@@ -682,22 +731,23 @@ where
         let (bar, section, sums) = (self.bar, self.section, self.sums);
         if let Some(out) = self.out.as_deref_mut() {
             bar.finish_force(&mut out.force);
-            if self.tangent {
+            if const { T::STIFFNESS } && self.tangent {
                 bar.finish_stiffness(&mut out.stiffness);
             }
         }
         bar.finish_modes::<A>(sums);
-        if section.strain.is_linear() || !self.matrices {
+        if const { A == 0 && !T::STIFFNESS } || section.strain.is_linear() || !self.matrices {
             return;
         }
         for point in &section.points {
             let s = E::sample(self.x, self.prepared, point);
             let a = bar.curvature(&gradient(&s, self.q, self.alpha), s.weight);
-            if self.tangent
+            if const { T::STIFFNESS }
+                && self.tangent
                 && let Some(out) = self.out.as_deref_mut()
             {
                 let mut gamma = T::zero();
-                if E::Op::<T>::HOOP {
+                if const { E::Op::<T>::HOOP } {
                     gamma = bar.hoop_curvature(s.op.drill(self.q), s.weight);
                 }
                 s.op.add_stiffness(&a, gamma, &mut out.stiffness);
@@ -857,21 +907,27 @@ where
     let prepared = E::prepare(x, parameter, &own.sides(E::EDGE));
     let bar = Dilatation::<f64, N, M>::new::<E, A>(x, q, alpha, &prepared, section);
     let about = AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(x, q, &prepared, section);
-    let at = |(p, point): (usize, &Point<N>)| {
+    let mut all = Vec::with_capacity(section.points.len());
+    for (p, point) in section.points.iter().enumerate() {
         let s = E::sample(x, &prepared, point);
         let volume = s.weight * own.thickness::<f64, N>(p, section);
         let mut h = gradient(&s, q, alpha);
-        let mut strain = match &about {
-            Some(about) => about.strain(&h),
-            None => section.strain.strain(&h),
+        let mut strain = if const { E::ABOUT_MEAN }
+            && let Some(about) = &about
+        {
+            about.strain(&h)
+        } else {
+            section.strain.strain(&h)
         };
         let (mut hoop, mut around) = (0.0, 0.0);
-        if E::Op::<f64>::HOOP {
+        if const { E::Op::<f64>::HOOP } {
             hoop = s.op.drill(q);
             around = section.strain.hoop(hoop)[0];
         }
-        if let Some(bar) = &bar {
-            if E::Op::<f64>::HOOP {
+        if const { E::MEAN_DILATATION }
+            && let Some(bar) = &bar
+        {
+            if const { E::Op::<f64>::HOOP } {
                 bar.apply_to_ring(&mut strain, &mut around);
                 (h, hoop) = bar.ring_gradient(&h, hoop);
             } else {
@@ -879,11 +935,13 @@ where
                 h = bar.gradient(&h);
             }
         }
-        if let Some(about) = &about {
+        if const { E::ABOUT_MEAN }
+            && let Some(about) = &about
+        {
             h = about.h;
         }
         let mut penalty = 0.0;
-        if E::Op::<f64>::DRILL {
+        if const { E::Op::<f64>::DRILL } {
             let mut drill = s.op.drill(q);
             for m in 0..A {
                 for i in 0..2 {
@@ -893,9 +951,9 @@ where
             penalty = 0.5 * volume * parameter * drill * drill;
         }
         let strain = [strain[0], strain[1], around, strain[2]];
-        PointKinematics { h, hoop, strain, volume, penalty }
-    };
-    section.points.iter().enumerate().map(at).collect()
+        all.push(PointKinematics { h, hoop, strain, volume, penalty });
+    }
+    all
 }
 
 /// Work that an element has absorbed at local dofs `q`, with the stored internal modes: its
@@ -915,10 +973,27 @@ where
             alpha[m][i] = history.alpha[(2 * m + i) * history.stride];
         }
     }
+    let own = history.per_point;
+    let points = kinematics::<E, N, M, A>(x, q, &alpha, section, &own);
+    let (mut energy, memory) = absorbed_by_points(&points, section, history, E::MEMORY);
+    if let (Some(m), true) = (E::DISSIPATED, !memory.is_empty()) {
+        let stride = history.stride;
+        energy += memory[m] - history.memory(section).old[m * stride];
+    }
+    let [first, second] = E::stabilization(x, q, section, &own, &memory);
+    energy + first[0] + second[0]
+}
+
+/// The part of [`absorbed`] at the points, and what an element of so many members remembers.
+fn absorbed_by_points<const N: usize>(
+    points: &[PointKinematics],
+    section: &Section<N>,
+    history: &mut History<'_>,
+    memory: usize,
+) -> (f64, Vec<f64>) {
     let members = section.law.n_state();
     let own = history.per_point;
     let mut energy = 0.0;
-    let points = kinematics::<E, N, M, A>(x, q, &alpha, section, &own);
     for (p, at) in points.iter().enumerate() {
         let w = at.volume;
         let initial = [0, 1, 2, 3].map(|row| history.initial_strain::<f64>(p, row));
@@ -945,16 +1020,12 @@ where
         energy += at.penalty;
     }
     // Elements of laws without a history have no memory either.
-    let mut memory = Vec::new();
-    if members > 0 && E::MEMORY > 0 {
-        let state = history.memory(section);
-        memory.extend((0..E::MEMORY).map(|m| state.new[m * state.stride]));
-        if let Some(m) = E::DISSIPATED {
-            energy += memory[m] - state.old[m * state.stride];
-        }
+    let memory = if members > 0 { memory } else { 0 };
+    if memory == 0 {
+        return (energy, Vec::new());
     }
-    let [first, second] = E::stabilization(x, q, section, &own, &memory);
-    energy + first[0] + second[0]
+    let state = history.memory(section);
+    (energy, (0..memory).map(|m| state.new[m * state.stride]).collect())
 }
 
 /// Whether the law of any point has flowed since the start of the increment.
