@@ -320,6 +320,19 @@ def add_contact_forces(
     force: _Floats,
     size: _Floats | None = ...,
 ) -> None: ...
+def lemke(
+    c: _Floats, m: _Floats, start: NDArray[np.bool_] | None = ...
+) -> tuple[_Floats, NDArray[np.bool_]] | None: ...
+def times_of_crossing(
+    first: _Floats,
+    last: _Floats,
+    ends: _Integers,
+    old: _Floats,
+    new: _Floats,
+    nodes: _Integers,
+    outside: _Floats,
+    depth: float = ...,
+) -> _Floats: ...
 def materials() -> list[str]: ...
 def require_memory(bytes: float, job: str) -> None: ...
 def parse_nodes(

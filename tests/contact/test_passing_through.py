@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.analysis.terms.contact.setup import times_of_crossing
+from corota._core import times_of_crossing
 from support.pairs import cover
 
 LENGTH, HIGH, E, DEEP = 4.0, 0.05, 1000.0, 0.2

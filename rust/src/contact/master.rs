@@ -423,7 +423,8 @@ pub fn master_box(master: &Master<f64>) -> [f64; 4] {
     }
 }
 
-fn hull(points: &[Vec2<f64>]) -> [f64; 4] {
+/// Box around points.
+pub(super) fn hull(points: &[Vec2<f64>]) -> [f64; 4] {
     let mut b = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
     for p in points {
         for i in 0..2 {

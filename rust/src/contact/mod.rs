@@ -9,7 +9,9 @@
 pub mod active_set;
 pub mod boundary;
 pub mod chains;
+pub mod complementarity;
 pub mod corners;
+pub mod crossing;
 pub mod curve;
 pub mod discretization;
 pub mod law;

@@ -3,6 +3,7 @@
 
 mod blocks;
 mod contact;
+mod contact_kernels;
 mod contact_law;
 mod contact_line;
 mod edges;
@@ -19,6 +20,7 @@ use pyo3::prelude::*;
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     contact::register(m)?;
+    contact_kernels::register(m)?;
     contact_line::register(m)?;
     contact_law::register(m)?;
     edges::register(m)?;

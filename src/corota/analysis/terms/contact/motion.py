@@ -35,6 +35,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+import corota._core as _core
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.gaps import (
     AT_ONCE,
@@ -50,7 +51,6 @@ from corota.analysis.terms.contact.gaps import (
     covered,
 )
 from corota.errors import ConvergenceError
-from corota.lazy import lazy
 from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
@@ -69,8 +69,6 @@ if TYPE_CHECKING:
     States = NDArray[np.int8]
     #: Pressures of constraints at their gaps, and their derivatives.
     Law = Callable[[Floats], tuple[Floats, Floats]]
-
-lemke = lazy("corota.analysis.terms.contact.pivoting:lemke")
 
 
 class ForwardContact:
@@ -620,7 +618,7 @@ class UnilateralConstraints:
                 [of_p[n:], rows[n:, n:], eye],
                 [2.0 * bound, -eye, 0.0 * eye],
             ]
-            found = lemke(np.append(y / size, np.zeros(t)), np.block(table))
+            found = _core.lemke(np.append(y / size, np.zeros(t)), np.block(table))
             if found is None:
                 return None
             p, a = size * found[0][:n], size * found[0][n : n + t]

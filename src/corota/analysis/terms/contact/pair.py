@@ -35,7 +35,6 @@ from corota.analysis.terms.contact.setup import (
     chords,
     curve_at,
     make_core,
-    times_of_crossing,
 )
 from corota.arrays import distinct
 from corota.mesh.parts import components
@@ -767,7 +766,7 @@ class Pair:
             closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
             through = through[~closed[through]]
             start = starts()[through]
-            share = times_of_crossing(
+            share = _core.times_of_crossing(
                 first, end, ends, old, seen, nodes[through], start, SMALL * self.edge
             )
             through = through[share < math.inf]
@@ -782,7 +781,7 @@ class Pair:
             first, last = (curve_at(master, self.chords, self.reference, x) for x in (old, new))
             return first, last, np.full((len(first), 2), -1, np.int64)
         other = self.slave if self.master is None else self.master
-        nodes = other.nodes[:, :2]
+        nodes = np.ascontiguousarray(other.nodes[:, :2])
         if other.two_sided:
             nodes = np.concatenate([nodes, nodes[:, ::-1]])
         return old[nodes][:, :, :2], new[nodes][:, :, :2], nodes

@@ -4,12 +4,8 @@ A semismooth Newton method chooses the state of each constraint by itself. Where
 depend on each other, as at the friction bound of a body held only by friction, such choices
 may never converge. Here the linearized equations with all their conditions, a linear
 complementarity
-problem, are solved by pivoting (Lemke): every correction then satisfies all conditions to first
-order (the method of Josephy and Newton). Nothing is regularized.
-
-Linear complementarity problems by Lemke's method: R. W. Cottle, J.-S. Pang, R. E. Stone, *The
-Linear Complementarity Problem* (2009), ch. 4.4 and, for ties of the ratio test by lexicographic
-order, ch. 4.9.
+problem, are solved by pivoting (Lemke, in the core): every correction then satisfies all conditions
+to first order (the method of Josephy and Newton). Nothing is regularized.
 
 Sources: A. Klarbring, *A mathematical programming approach to three-dimensional contact problems
 with friction*, Comput. Methods Appl. Mech. Engrg. 58 (1986); N. H. Josephy, *Newton's method for
@@ -24,6 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import corota._core as _core
 from corota.analysis.terms.contact.gaps import SAME, RightHandSides, covered, sticking
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.errors import SingularError
@@ -38,120 +35,6 @@ if TYPE_CHECKING:
     States = list[NDArray[np.int8]]
     #: Correction of dofs and multipliers, its states, signs of slipping tractions.
     Found = tuple[Floats, States, list[Floats]]
-
-#: Rounding bounds of Lemke's method: relative size of a pivot that is zero, and difference of
-#: ratios that tie.
-ZERO, TIE = 1e-11, 1e-10
-
-
-def lemke(c: Floats, m: Floats) -> tuple[Floats, Bools] | None:
-    """Solve ``y = c + m x, x >= 0, y >= 0, x y = 0``.
-
-    Parameters
-    ----------
-    c : ndarray, shape (n,)
-    m : ndarray, shape (n, n)
-        Rows and columns of like size.
-
-    Returns
-    -------
-    x : ndarray, shape (n,)
-    basic : ndarray of bool, shape (n,)
-        Which x are in the basis at the end; their y are zero.
-    None
-        If the method ends on a ray: there is no solution, or it cannot find one.
-    """
-    n = len(c)
-    basic = np.zeros(n, bool)
-    if n == 0 or c.min() >= 0.0:
-        return np.zeros(n), basic
-    # Columns of the variables that are not in the basis, at first x and the artificial one; then
-    # the right-hand side: y - m x - d t = c. Variables: y (n), x (n), the artificial one.
-    table = np.concatenate([-m, -np.ones((n, 1)), c[:, None]], axis=1)
-    change = np.empty_like(table)
-    base, others = np.arange(n), np.arange(n, 2 * n + 1)
-    row, at = int(np.argmin(c)), n
-    seen: set[bytes] = set()
-    while (now := base.tobytes()) not in seen:  # no basis comes twice, but by rounding
-        seen.add(now)
-        column = table[:, at].copy()
-        # The variable that leaves had the column of a basis.
-        table[:, at] = 0.0
-        table[row, at] = 1.0
-        pivot = table[row] / column[row]
-        column[row] = 0.0
-        np.multiply(column[:, None], pivot, out=change)
-        table -= change
-        table[row] = pivot
-        base[row], others[at] = others[at], base[row]
-        leaving = int(others[at])
-        if leaving == 2 * n:
-            x = np.zeros(n)
-            inside = (base >= n) & (base < 2 * n)
-            x[base[inside] - n] = table[inside, -1]
-            basic[base[inside] - n] = True
-            return np.maximum(x, 0.0), basic
-        entering = leaving + n if leaving < n else leaving - n
-        at = int(np.flatnonzero(others == entering)[0])
-        column = table[:, at]
-        able = np.flatnonzero(column > ZERO * max(1.0, float(np.abs(column).max())))
-        if not len(able):
-            return None
-        row = _leaving(table, column, able, base, others)
-    return None
-
-
-def _leaving(table: Floats, column: Floats, able: Ints, base: Ints, others: Ints) -> int:
-    """Row that leaves the basis; of ties the artificial variable, then the lexicographic least."""
-    ratio = np.maximum(table[able, -1], 0.0) / column[able]
-    size = max(float(np.abs(table[:, -1]).max()) / max(float(np.abs(column).max()), 1e-300), 1e-300)
-    tied = able[ratio <= ratio.min() + TIE * min(size, max(float(ratio.min()), 1e-4 * size))]
-    n = len(base)
-    final = np.flatnonzero(base[tied] == 2 * n)
-    if len(final):
-        return int(tied[final[0]])
-    for k in range(n):
-        if len(tied) == 1:
-            break
-        outside = np.flatnonzero(others == k)
-        row = table[tied, outside[0]] if len(outside) else (base[tied] == k).astype(float)
-        other = row / column[tied]
-        tied = tied[other <= other.min() + TIE * max(1.0, float(np.abs(other).max()))]
-    # Of rows that are equal to rounding, the one with the largest pivot.
-    return int(tied[np.argmax(column[tied])])
-
-
-def from_basis(c: Floats, m: Floats, start: Bools) -> tuple[Floats, Bools] | None:
-    """Solution of the same problem by Lemke's method from a basis with the x of `start`.
-
-    Block principal pivoting exchanges these x and their y. None also if that basis is singular.
-
-    Parameters
-    ----------
-    start : ndarray of bool, shape (n,)
-    """
-    exchange = -m[start]
-    exchange[:, start] = np.eye(len(exchange))
-    try:
-        rows = np.linalg.solve(m[np.ix_(start, start)], exchange)
-    except np.linalg.LinAlgError:
-        return None
-    first = np.zeros_like(c)
-    first[start] = -rows[:, start] @ c[start]
-    turned = np.where(start, 0.0, m)
-    turned[~start] += m[np.ix_(~start, start)] @ rows
-    turned[start] = rows
-    found = lemke(np.where(start, first, c + m @ first), turned)
-    if found is None:
-        return None
-    basic = start ^ found[1]
-    x = np.where(start, first + turned @ found[0], found[0])
-    x = np.where(basic, np.maximum(x, 0.0), 0.0)
-    # A basis that is singular to rounding has lost all digits; half of them are enough here.
-    size = np.abs(c).max() + np.abs(m).max() * x.max()
-    solved = np.abs(np.minimum(x, c + m @ x)).max() <= SAME**0.5 * size
-    return (x, basic) if solved else None
-
 
 #: Size of the linear complementarity problem: most constraints (its cost grows with the cube); a
 #: tenth of them may be open ones from the start.
@@ -447,9 +330,9 @@ class Pivoting:
         for a, (_, _, kind) in enumerate(kinds):
             if kind == "along":
                 m[a, a + 1] += 1.0  # the slip against the traction is one of two that differ
-        found = lemke(y[:, 0], m)
+        found = _core.lemke(y[:, 0], m)
         if found is None and self.problem.slides:
-            found = from_basis(y[:, 0], m, _sliding(y[:, 0], m, kinds))
+            found = _core.lemke(y[:, 0], m, _sliding(y[:, 0], m, kinds))
         if found is None:
             return None
         x, basic = found
