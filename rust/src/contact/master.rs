@@ -55,6 +55,8 @@ pub struct Rigid {
     /// Whether the rotation of the node turns it; else it moves along only.
     pub(super) turns: bool,
     point: Vec2<f64>,
+    /// Whether it is one line or one arc.
+    single: bool,
 }
 
 impl Rigid {
@@ -91,7 +93,16 @@ impl Rigid {
                 pieces.push(Piece::Arc(center, radius, start + part * k as f64, part));
             }
         }
-        Ok(Self { pieces, node, turns, point })
+        Ok(Self { pieces, node, turns, point, single: rows.len() == 1 })
+    }
+
+    /// Normal through a point of one line or arc, which motions across this normal leave as it is.
+    pub(super) fn only_normal(&self, p: Vec2<f64>) -> Option<Vec2<f64>> {
+        let across = match self.pieces[0] {
+            Piece::Line(a, b) => outward(sub(b, a)),
+            Piece::Arc(center, ..) => sub(sub(p, self.point), center),
+        };
+        self.single.then(|| times(across, across[0].hypot(across[1]).max(1e-300).recip()))
     }
 
     fn frame<T: Smooth>(&self, v: &[T]) -> Frame<T> {

@@ -13,6 +13,7 @@ pub mod complementarity;
 pub mod corners;
 pub mod crossing;
 pub mod curve;
+pub mod discrete_gradient;
 pub mod discretization;
 pub mod law;
 pub mod master;

@@ -11,6 +11,7 @@ use super::sides::{Distances, Sides};
 use super::slave::{Depth, Slave};
 use super::terms::{Terms, WIDTH};
 use super::travel::Start;
+use std::collections::HashSet;
 
 /// A pair of boundaries.
 pub struct Contact {
@@ -100,6 +101,10 @@ impl Contact {
         &self.sides.slave
     }
 
+    pub fn master(&self) -> &Surface {
+        &self.sides.master
+    }
+
     /// Slave node of each constraint, by its place in the slave's nodes; of a corner of the master
     /// the nearest.
     pub fn places(&self) -> Vec<usize> {
@@ -135,6 +140,17 @@ impl Contact {
             items += corners.len();
         }
         all
+    }
+
+    /// Numbers of the candidates of an item whose members are those of given ones, or the next two.
+    pub fn near(&self, given: impl Iterator<Item = usize>) -> Vec<usize> {
+        let all = self.candidates();
+        let given: HashSet<Candidate> = given.map(|p| all[p]).collect();
+        let near = |&p: &usize| {
+            let (item, member) = all[p];
+            (member.saturating_sub(2)..=member + 2).any(|m| given.contains(&(item, m)))
+        };
+        (0..all.len()).filter(near).collect()
     }
 
     /// Clearance taken off the gap of each constraint.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use crate::base::pool;
+use crate::contact::active_set::Gradients;
+use crate::contact::discrete_gradient::discrete_gradient;
 use crate::contact::discretization::{self, DISCRETIZATIONS, Entry};
 use crate::contact::slave::Depth;
 use crate::contact::terms::WIDTH;
@@ -326,13 +328,18 @@ impl Contact {
         matrix(py, flat, [list.len(), 2])
     }
 
-    /// Variables (P, v) and constraints (P, 3) of the candidate pairs, -1 where unused.
-    fn pattern<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let n = self.pair.candidates().len();
-        let variables = (0..n).flat_map(|p| self.pair.variables(p)).collect();
+    /// Variables (k, v) and constraints (k, 3), -1 where unused, of the candidate pairs next to given
+    /// ones, these included.
+    fn near<'py>(
+        &self,
+        py: Python<'py>,
+        pairs: PyReadonlyArray1<'_, i64>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let near = self.pair.near(pairs.as_slice()?.iter().map(|&p| p as usize));
+        let variables = near.iter().flat_map(|&p| self.pair.variables(p)).collect();
         let number = |k: usize| i64::try_from(k).unwrap_or(-1);
-        let constraints = (0..n).flat_map(|p| self.pair.constraints(p).map(number)).collect();
-        Ok((matrix(py, variables, [n, WIDTH])?, matrix(py, constraints, [n, 3])?))
+        let constraints = near.iter().flat_map(|&p| self.pair.constraints(p).map(number)).collect();
+        Ok((matrix(py, variables, [near.len(), WIDTH])?, matrix(py, constraints, [near.len(), 3])?))
     }
 
     /// Terms at a configuration, sorted by constraint; without ``old`` the slip is left out. With it,
@@ -357,6 +364,56 @@ impl Contact {
         };
         self.terms = py.detach(|| pool::run(threads, |_| pair.evaluate(x, old, closed)));
         self.collect(py)
+    }
+
+    /// Terms along which tractions act whose work in an increment from ``old`` to ``x`` is that of its
+    /// gaps, which change by ``rise`` (n,).
+    ///
+    /// Gradients are those of ``middle`` where it is ``known`` (n,), else those of ``end``. Gives
+    /// constraints, pairs, variables, both gradients, and the slips (n,).
+    #[allow(clippy::too_many_arguments)]
+    fn discrete_gradient<'py>(
+        &self,
+        py: Python<'py>,
+        middle: TermArrays<'py>,
+        end: TermArrays<'py>,
+        known: PyReadonlyArray1<'py, bool>,
+        rise: Floats<'py>,
+        old: Rows<'py>,
+        x: Rows<'py>,
+        rounding: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let positions = [self.configuration(&old, "old")?, self.configuration(&x, "x")?];
+        let (known, rise, parts) = (known.as_slice()?, rise.as_slice()?, [&middle, &end]);
+        let n = self.pair.offset().len();
+        if known.len() != n || rise.len() != n {
+            return Err(bad(format!("known and rise are {n} values each")));
+        }
+        let mut rows = Vec::new();
+        for (part, of) in parts.iter().enumerate() {
+            for (row, &k) in of.constraint.as_slice()?.iter().enumerate() {
+                if known[k as usize] == (part == 0) {
+                    rows.push((part, row));
+                }
+            }
+        }
+        let constraint = chosen(&rows, [middle.constraint.as_slice()?, end.constraint.as_slice()?]);
+        let pair = chosen(&rows, [middle.pair.as_slice()?, end.pair.as_slice()?]);
+        let variables = chosen(&rows, [wide(&middle.variables)?, wide(&end.variables)?]);
+        let gap = chosen(&rows, [wide(&middle.gap_gradient)?, wide(&end.gap_gradient)?]);
+        let slip = chosen(&rows, [wide(&middle.slip_gradient)?, wide(&end.slip_gradient)?]);
+        let gradients =
+            Gradients { constraint: &constraint, dofs: &variables, gap: &gap, slip: &slip };
+        let master = self.pair.master();
+        let (gap, slips) = discrete_gradient(master, &gradients, rise, positions, rounding);
+        let (d, shape) = (PyDict::new(py), [rows.len(), WIDTH]);
+        d.set_item("constraint", constraint.into_pyarray(py))?;
+        d.set_item("pair", pair.into_pyarray(py))?;
+        d.set_item("variables", matrix(py, variables.concat(), shape)?)?;
+        d.set_item("gap_gradient", matrix(py, gap.concat(), shape)?)?;
+        d.set_item("slip_gradient", matrix(py, slip.concat(), shape)?)?;
+        d.set_item("slip", slips.into_pyarray(py))?;
+        Ok(d)
     }
 
     /// Pairs (h,), variables (h, v) and derivatives (h, v, v) of ``sum_k p_k dG_k + q_k dS_k``, of
@@ -497,6 +554,25 @@ impl Contact {
         }
         Ok(d)
     }
+}
+
+/// Arrays of the terms of a pair.
+#[derive(FromPyObject)]
+struct TermArrays<'py> {
+    constraint: PyReadonlyArray1<'py, i64>,
+    pair: PyReadonlyArray1<'py, i64>,
+    variables: Numbers<'py>,
+    gap_gradient: Rows<'py>,
+    slip_gradient: Rows<'py>,
+}
+
+fn wide<'a, T: numpy::Element>(array: &'a PyReadonlyArray2<'_, T>) -> PyResult<&'a [[T; WIDTH]]> {
+    rows::<WIDTH, T>(array, "terms")
+}
+
+/// Rows of two arrays.
+fn chosen<T: Copy>(rows: &[(usize, usize)], of: [&[T]; 2]) -> Vec<T> {
+    rows.iter().map(|&(part, row)| of[part][row]).collect()
 }
 
 /// An array with a shape.

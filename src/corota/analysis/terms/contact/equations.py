@@ -722,21 +722,10 @@ def second_derivatives(
 
 def _near(term: ContactTerm, pair: Pair, terms: Terms) -> tuple[Ints, Ints]:
     """Dofs and multipliers of candidate pairs next to closed ones."""
-    none = np.zeros((0, 0), np.int64)
-    if not term.system.nlgeom:
+    if not term.system.nlgeom or not len(terms.pair):
+        none = np.zeros((0, 0), np.int64)
         return none, none
-    variables, constraints = pair.core.pattern()
-    found = pair.core.candidates()
-    used = np.zeros(len(found), bool)
-    used[terms.pair] = True
-    if not used.any():
-        return none, none
-    width = int(found[:, 1].max()) + 8
-    key = found[:, 0] * width + found[:, 1] + 3
-    keys = np.sort(key[used])
-    next_up = np.minimum(np.searchsorted(keys, key - 2), len(keys) - 1)
-    close = np.abs(keys[next_up] - key) <= 2
-    variables, constraints = variables[close], constraints[close]
+    variables, constraints = pair.core.near(terms.pair)
     own = np.where(constraints >= 0, pair.first + pair.owner[constraints], -1)
     if pair.two:
         own = np.concatenate([own, np.where(own >= 0, own + pair.n, -1)], axis=1)

@@ -26,7 +26,6 @@ from corota.analysis.terms.contact.gaps import (
     WAITED,
     Terms,
     covered,
-    discrete_gradient,
     mean,
 )
 from corota.analysis.terms.contact.setup import (
@@ -266,15 +265,13 @@ class Pair:
         self.core.search(x)
         terms = self._read(self.core.evaluate(x, before, self.closed))
         if middle is not None:
-            terms.between = discrete_gradient(
-                terms,
-                self._shared(middle),
-                self.gap_of_start(terms),
-                self.full,
-                (old, x),
-                getattr(self.item, "master", None),
-                SAME * self.size,
+            # Terms that exist only at the end act along the gradient there.
+            half = self._shared(middle)
+            known, rise = covered(half.area, self.full), terms.gap - self.gap_of_start(terms)
+            between = self.core.discrete_gradient(
+                half, terms, known, rise, old, x, SAME * self.size
             )
+            terms.between = replace(terms, **between)
             terms.slip = terms.between.slip
         return self._at_planes(self._since(terms), x)
 
