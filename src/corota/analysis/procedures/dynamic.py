@@ -175,7 +175,7 @@ class DynamicStepper(NewtonStepper):
                 begin, end, energy_balance = self.motion.start, self.motion.end, self.energy_balance
                 energy = max(energy_balance.energy, energy_balance.driven(end))
                 missed = self.approach.impact_error(
-                    contact, end.u - begin.u, energy, step.error_tolerance
+                    contact.contact_state, end.u - begin.u, energy, step.error_tolerance
                 )
                 self.error = max(self.error, missed)
             if self.error > 1.0 and CUT * dt >= self.control.shortest:

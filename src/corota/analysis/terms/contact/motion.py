@@ -60,7 +60,6 @@ if TYPE_CHECKING:
 
     from corota.analysis.energies import Energies
     from corota.analysis.equations import System
-    from corota.analysis.increment_loop import ContactIncrement
     from corota.analysis.linear.types import Kind
     from corota.analysis.terms.contact.pair import Pair, Terms
     from corota.analysis.terms.inertia import MotionState
@@ -706,7 +705,7 @@ class Approach:
         self.meets = self.limited = False
 
     def impact_error(
-        self, contact: ContactIncrement, moved: Floats, energy: float, tolerance: float
+        self, state: ContactState | None, moved: Floats, energy: float, tolerance: float
     ) -> float:
         """Error of an increment in the instant of impact, relative to the allowed one.
 
@@ -718,7 +717,8 @@ class Approach:
 
         Parameters
         ----------
-        contact : ContactIncrement
+        state : ContactState or None
+            At the end of the increment; None without contact.
         moved : ndarray, shape (n_dofs,)
             Displacement of the increment.
         energy : float
@@ -726,7 +726,7 @@ class Approach:
         tolerance : float
             Of the step [1].
         """
-        term, state = self.term, contact.contact_state
+        term = self.term
         if state is None:
             return 0.0
         first = self._first_contact(state) / tolerance
