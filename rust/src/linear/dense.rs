@@ -98,16 +98,21 @@ pub fn eliminate(
         if rest > 0 {
             let shared = share && rest * block * (width - k) >= SHARE_ABOVE / 4;
             let head = head.as_ref();
-            if shared {
-                tail.as_mut().par_row_chunks_mut(TILE).for_each(|t| substitute(head, t));
-            } else {
-                let mut left = tail.as_mut();
-                while left.nrows() > TILE {
-                    let (now, later) = left.split_at_row_mut(TILE);
-                    substitute(head, now);
-                    left = later;
+            let mut left = Some(tail.as_mut());
+            let tiles = std::iter::from_fn(|| {
+                let rows = left.take()?;
+                if rows.nrows() <= TILE {
+                    return Some(rows);
                 }
-                substitute(head, left);
+                let (tile, rest) = rows.split_at_row_mut(TILE);
+                left = Some(rest);
+                Some(tile)
+            });
+            if shared {
+                let tiles: Vec<_> = tiles.collect();
+                tiles.into_par_iter().for_each(|t| substitute(head, t));
+            } else {
+                tiles.for_each(|t| substitute(head, t));
             }
             // Keep L D for the update, then turn the rows into L.
             let mut product = MatMut::from_column_major_slice_mut(
