@@ -3,7 +3,7 @@
 Usage::
 
     python -m benchmarks sweep_rate [--variants 200] [--executors serial processes dask]
-    mpiexec -n 3 python -m mpi4py.futures -m benchmarks sweep_rate --executors mpi
+    mpiexec -n 3 python -m mpi4py.futures -m benchmarks.speed.sweep_rate --executors mpi
 
 A cross-spring flexure of about 2,000 dofs is bent in ten increments; thickness, length and
 modulus vary. The rate counts the start of the processes once; beside it stands the rate by

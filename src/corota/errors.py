@@ -87,7 +87,7 @@ def number(
     """
     try:
         found = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"{what} must be a number, not {value!r}", where) from None
     if not math.isfinite(found) or isinstance(value, str):
         raise InputError(f"{what} must be a finite number, not {value!r}", where)

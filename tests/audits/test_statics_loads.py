@@ -298,7 +298,12 @@ def strip(element: str, n: int, L: float, h: float) -> tuple[Any, Any]:
 
 @pytest.mark.parametrize(
     ("element", "what"),
-    cover(["BEAM", "Q8", "Q4D", "Q4I"], ["pressure", "weight", "bracket"], strength=1),
+    cover(
+        ["BEAM", "Q8", "Q4D", "Q4I"],
+        ["pressure", "weight", "bracket"],
+        strength=1,
+        allowed=lambda *case: case != ("BEAM", "pressure"),  # beams take no pressure
+    ),
 )
 def test_cantilever_far_bent_by_load_on_its_length(element: str, what: str) -> None:
     """Pressure that follows, own weight upward, a dead force on a rigid bracket: rod theory.
@@ -334,8 +339,6 @@ def test_cantilever_far_bent_by_load_on_its_length(element: str, what: str) -> N
 
     z, _ = solve_rod(6, make)
     if element == "BEAM":
-        if what == "pressure":
-            pytest.skip("beams take no pressure")
         n = 60
         points = np.column_stack([np.linspace(0, L, n + 1), np.zeros(n + 1)])
         points = np.vstack([points, [L + arm[0], arm[1]]])

@@ -116,7 +116,12 @@ def test_energy_rises_by_the_work_of_a_step(element: str, strain: str) -> None:
 
 @pytest.mark.parametrize(
     ("element", "strain", "law"),
-    cover([e for e in CELL if e != "OPT"], ["logarithmic", "green_lagrange"], ["elastic", "flow"]),
+    cover(
+        [e for e in CELL if e != "OPT"],
+        ["logarithmic", "green_lagrange"],
+        ["elastic", "flow"],
+        allowed=lambda _, *case: case != ("green_lagrange", "flow"),  # refused
+    ),
 )
 def test_reaction_is_true_stress_times_current_area(element: str, strain: str, law: str) -> None:
     """A sheet drawn to 1.3 x 1.1 in plane stress and turned: force = Cauchy stress x height x STH.
@@ -124,8 +129,6 @@ def test_reaction_is_true_stress_times_current_area(element: str, strain: str, l
     Without OPT: the frames of its two triangles turn apart when stretches differ, the rotations of
     nodes cannot fit both. The thickness is that of the output (flow) or follows from the strain.
     """
-    if law == "flow" and strain == "green_lagrange":
-        pytest.skip("refused")
     t, nu, E = 0.4, 0.3, 200.0
     mesh = ct.mesh.rectangle(2.0, 1.0, 2, 2, CELL[element])
     model = ct.Model(mesh)

@@ -67,10 +67,17 @@ def pulled(element: str, material: Any, plane: str, temperature: float) -> ct.Fr
     return ct.solve(model, threads=1).frames[-1]
 
 
-@pytest.mark.parametrize(("element", "plane", "law"), cover(ELEMENTS, ["stress", "strain"], LAWS))
+@pytest.mark.parametrize(
+    ("element", "plane", "law"),
+    cover(
+        ELEMENTS,
+        ["stress", "strain"],
+        LAWS,
+        # Its hourglass would stay elastic.
+        allowed=lambda element, _, law: (element, law) != ("Q4R", ramberg_osgood),
+    ),
+)
 def test_at_one_temperature_it_is_the_material_there(element: str, plane: str, law: Any) -> None:
-    if law is ramberg_osgood and element == "Q4R":
-        pytest.skip("its hourglass would stay elastic")
     for temperature in (-100.0, 150.0, 500.0):
         table = law()
         got = pulled(element, table, plane, temperature)

@@ -1,7 +1,7 @@
 """Generated decks of beams, shells, masses, joints and CAE's layout agree with CalculiX 2.20.
 
 The answers of ``ccx`` are stored in tests/data/structure_decks.json (made by ``python -m
-benchmarks.corpora.structure_decks``, which also runs CalculiX again).
+benchmarks structure_decks``, which also runs CalculiX again).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -69,12 +69,12 @@ class LawCheck(Brief):
         work, over the largest work; None for laws that do not give them.
     created : float
         Work gained in a closed cycle over the largest work; 0 if none is.
+    curves : dict
+        Strain and stress by path, each (n, 3), for the picture.
     repeats : bool
         Whether the same path gives the same stress again.
     falls : list of str
         Equivalent plastic strain or dissipation, where they fall along a path.
-    curves : dict
-        Strain and stress by path, each (n, 3), for the picture.
     """
 
     name: str
@@ -84,9 +84,9 @@ class LawCheck(Brief):
     objectivity: float | None
     energy: float | None
     created: float
+    curves: dict[str, tuple[Floats, Floats]] = field(default_factory=dict, repr=False)
     repeats: bool = True
     falls: list[str] = field(default_factory=list)
-    curves: dict[str, tuple[Floats, Floats]] = field(default_factory=dict, repr=False)
 
     @property
     def faults(self) -> list[str]:

@@ -46,9 +46,13 @@ class Keyword:
 #: Usual spelling of each keyword, and the module that declares it, by the name without blanks.
 _DECLARED = {
     key(name): (name, path.stem)
-    for path in Path(__file__).with_name("cards").glob("*.py")
+    for path in sorted(Path(__file__).with_name("cards").glob("*.py"))
     for name in map(bytes.decode, re.findall(rb'\n@keyword\(\s*"([^"]+)"', path.read_bytes()))
 }
+if not _DECLARED:
+    raise ImportError(
+        "the sources of corota.io.deck.cards, which declare the keywords, are missing"
+    )
 SPELLED = {plain: name for plain, (name, _) in _DECLARED.items()}
 
 
@@ -81,7 +85,9 @@ def keyword(
     """
 
     def enter(function: Function) -> Function:
-        KEYWORDS[key(name)] = Keyword(function, parameters, ignored, place)
+        # What a program has put in the place of one of these cards stays.
+        if key(name) not in _DECLARED or dict.get(KEYWORDS, key(name)) is None:
+            KEYWORDS[key(name)] = Keyword(function, parameters, ignored, place)
         return function
 
     return enter
