@@ -21,9 +21,12 @@ pub type Solution = (Vec<f64>, Vec<bool>);
 /// Solution of a problem with the rows of `m` one after the other.
 ///
 /// The method begins with the `y` in the basis, in exchange for the `x` of `start` if there is one.
-/// None if it ends on a ray, where there is no solution or it cannot find one, or if that basis is
-/// singular.
+/// None if it ends on a ray, where there is no solution or it cannot find one, if that basis is
+/// singular, or if a number is not finite.
 pub fn lemke(c: &[f64], m: &[f64], start: Option<&[bool]>) -> Option<Solution> {
+    if !c.iter().chain(m).all(|v| v.is_finite()) {
+        return None;
+    }
     let mut tableau = Tableau::new(c, m);
     if let Some(start) = start {
         tableau.exchange(start)?;
@@ -43,7 +46,7 @@ fn is_solved(c: &[f64], m: &[f64], x: &[f64]) -> bool {
         let y = c[i] + row.iter().zip(x).map(|(m, x)| m * x).sum::<f64>();
         x[i].min(y).abs()
     };
-    m.chunks_exact(c.len()).enumerate().all(|row| error(row) <= HALF_OF_THE_DIGITS * size)
+    m.chunks_exact(c.len().max(1)).enumerate().all(|row| error(row) <= HALF_OF_THE_DIGITS * size)
 }
 
 /// `y - M x - d t = c` with the artificial variable t, solved for the basis.
@@ -218,6 +221,8 @@ mod tests {
     #[test]
     fn without_a_solution_the_method_ends_on_a_ray() {
         assert!(lemke(&[-1.0], &[-1.0], None).is_none());
+        assert!(lemke(&[1.0, f64::NAN], &[1.0, 0.0, 0.0, 1.0], None).is_none());
+        assert!(lemke(&[], &[], Some(&[])).is_some());
         assert!(lemke(&[-1.0, 1.0], &[0.0, 1.0, -1.0, 0.0], Some(&[true, false])).is_none());
     }
 }

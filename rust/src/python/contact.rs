@@ -335,7 +335,11 @@ impl Contact {
         py: Python<'py>,
         pairs: PyReadonlyArray1<'_, i64>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let near = self.pair.near(pairs.as_slice()?.iter().map(|&p| p as usize));
+        let (pairs, n) = (pairs.as_slice()?, self.pair.candidates().len());
+        if pairs.iter().any(|&p| p as usize >= n) {
+            return Err(bad(format!("pairs are numbers below {n}")));
+        }
+        let near = self.pair.near(pairs.iter().map(|&p| p as usize));
         let variables = near.iter().flat_map(|&p| self.pair.variables(p)).collect();
         let number = |k: usize| i64::try_from(k).unwrap_or(-1);
         let constraints = near.iter().flat_map(|&p| self.pair.constraints(p).map(number)).collect();
@@ -392,7 +396,8 @@ impl Contact {
         let mut rows = Vec::new();
         for (part, of) in parts.iter().enumerate() {
             for (row, &k) in of.constraint.as_slice()?.iter().enumerate() {
-                if known[k as usize] == (part == 0) {
+                let known = known.get(k as usize).ok_or_else(|| bad("no such constraint"))?;
+                if *known == (part == 0) {
                     rows.push((part, row));
                 }
             }
@@ -400,6 +405,9 @@ impl Contact {
         let constraint = chosen(&rows, [middle.constraint.as_slice()?, end.constraint.as_slice()?]);
         let pair = chosen(&rows, [middle.pair.as_slice()?, end.pair.as_slice()?]);
         let variables = chosen(&rows, [wide(&middle.variables)?, wide(&end.variables)?]);
+        if variables.as_flattened().iter().any(|&v| v >= 3 * positions[0].len() as i64) {
+            return Err(bad("variables of nodes that do not exist"));
+        }
         let gap = chosen(&rows, [wide(&middle.gap_gradient)?, wide(&end.gap_gradient)?]);
         let slip = chosen(&rows, [wide(&middle.slip_gradient)?, wide(&end.slip_gradient)?]);
         let gradients =

@@ -363,8 +363,16 @@ def _beside(trees: list[Tree], fresh: Sequence[object]) -> Iterator[tuple[Tree, 
         yield tree, fresh[i] if i < len(fresh) else None
 
 
+#: Modules that were renamed within a format, by their former names.
+RENAMED = {
+    f"corota.analysis.terms.contact.{former}": "corota.analysis.terms.contact.motion"
+    for former in ("newton", "forward")
+}
+
+
 def _class(name: str) -> Any:
     module, _, path = name.partition(":")
+    module = RENAMED.get(module, module)
     if not module.startswith(PACKAGES):
         raise UnsuitableState(f"{module} cannot be part of a state")
     try:

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, SMALL, WAITED, covered, mean
+from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, WAITED, covered, mean
 from corota.analysis.terms.contact.setup import (
     CORNER,
+    FLAT,
     alone,
     blunt_turns,
     chords,
@@ -331,7 +332,7 @@ def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
         a, b, c = points[pair.nodes[chain], :2]
         first, second = b - a, c - b
         turn = abs(math.atan2(first[0] * second[1] - first[1] * second[0], float(first @ second)))
-        if SMALL < turn < CORNER:
+        if FLAT < turn < CORNER:
             depth = math.hypot(*first) * turn / 12.0
             return (
                 f"contact pair {pair.name!r}: the slave surface is round, has friction, and a "

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import corota._core as _core
-from corota.analysis.terms.contact.gaps import AT_ONCE, SAME, SMALL
+from corota.analysis.terms.contact.gaps import AT_ONCE, SAME
 from corota.arrays import distinct
 from corota.errors import ModelError
 from corota.mesh.kinds import EDGES
@@ -257,6 +257,8 @@ def line_core(
 
 #: Turns of the boundary at a node that are smoothed: larger ones are corners.
 CORNER = math.radians(50.0)
+#: Turn of a straight boundary whose coordinates have few digits [rad].
+FLAT = 5e-3
 
 
 class Shape(IntEnum):
@@ -312,7 +314,7 @@ def smoothed(points: Floats, master: Surface) -> tuple[Ints, Floats, Ints]:
 def blunt_turns(points: Floats, master: Surface) -> dict[int, float]:
     """Nodes at which a boundary turns, but not sharply, with the angles [rad]."""
     turns = _turns(points, [side for row in master.nodes.tolist() for side in _sides(row)])
-    return {node: abs(turn) for node, turn in turns.items() if SMALL < abs(turn) < CORNER}
+    return {node: abs(turn) for node, turn in turns.items() if FLAT < abs(turn) < CORNER}
 
 
 def sharp_corners(x: Floats, edges: Ints) -> list[int]:
