@@ -180,7 +180,7 @@ def _model(case: Case, folder: Path, every: int, resume: bool) -> int:
 def _arm(strike: Strike) -> Counter[str]:
     """Count what changes files; end the process in the call that is chosen.
 
-    Names and calls: ``append`` (a piece of text, half of it written), ``apply`` (the numbers of
+    Names and calls: ``append`` (a piece of text, half of it written), ``commit`` (the numbers of
     a result file, half of them written), and before or after the system's ``replace``, ``link``,
     ``unlink`` and ``fsync``.
     """
@@ -208,7 +208,7 @@ def _arm(strike: Strike) -> Counter[str]:
 
     for name in ("replace", "link", "unlink", "fsync"):
         around(name)
-    append, apply = atomic_file.TextFile.append, atomic_file.AtomicFile._apply
+    append, commit = atomic_file.TextFile.append, atomic_file.AtomicFile.commit
 
     def half_text(self: Any, text: str) -> None:
         if due("append"):
@@ -216,19 +216,21 @@ def _arm(strike: Strike) -> Counter[str]:
             end()
         append(self, text)
 
-    def half_numbers(self: Any, file: Any, pages: Any) -> None:
-        if due("apply"):
+    def half_numbers(self: Any, last: bool = False) -> None:
+        pages = {**self._behind, **self._pages}
+        if pages and due("commit"):
             numbers = sorted(pages)
             half = len(numbers) // 2
-            apply(self, file, {n: pages[n] for n in numbers[:half]})
-            for n in numbers[half : half + 1]:
-                apply(self, file, {n: pages[n][: len(pages[n]) // 2]})
-            file.flush()
-            end()
-        apply(self, file, pages)
+            with open(self.hidden, "r+b") as file:
+                for n in numbers[: half + 1]:
+                    file.seek(n * atomic_file.PAGE)
+                    file.write(pages[n] if n < numbers[half] else pages[n][: len(pages[n]) // 2])
+                file.flush()
+                end()
+        commit(self, last)
 
     atomic_file.TextFile.append = half_text  # type: ignore[method-assign]
-    atomic_file.AtomicFile._apply = half_numbers  # type: ignore[method-assign]
+    atomic_file.AtomicFile.commit = half_numbers  # type: ignore[method-assign]
     return calls
 
 
