@@ -196,9 +196,9 @@ def check_material(
         None if material.oriented else turned,
         energy,
         max(created, 0.0),
+        curves,
         repeats,
         sorted(falls),
-        curves,
     )
 
 
