@@ -25,7 +25,7 @@ SAME = 1e-9
 #: Rest of Newton's method over its whole, as of a length over an edge: depth up to which a node
 #: touches (as where a node of the other side carries both), that a fixed surface may be pressed
 #: into another fixed one, slip that turns the friction of a node round whose stiffness does not
-#: count, turn of a flat boundary [rad]; residual from which only digits are missing: states that do
+#: count; residual from which only digits are missing: states that do
 #: not change any more are those of the end, and a position on the way is reached.
 SMALL = 1e-6
 #: Regularization of redundant constraints: compliance of closed ones relative to that of their
