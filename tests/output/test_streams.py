@@ -88,6 +88,43 @@ def test_full_standard_output_is_6_but_the_files_are_there(tmp_path, call):
     assert (tmp_path / "deck.vtkhdf").exists()
 
 
+#: A signal comes where Python loses an exception, or makes another one of it: in a callback of a
+#: weak reference, or while a class is being made, as imports do.
+WHILE_IMPORTING = """
+import signal, sys, weakref
+way = sys.argv.pop()
+from importlib.abc import MetaPathFinder
+class Strike:
+    def __set_name__(self, owner, name):
+        signal.raise_signal(signal.SIGINT)
+class Finder(MetaPathFinder):
+    def find_spec(self, name, *_):
+        if name == "corota.io.deck.drafts":
+            if way == "lost":
+                weakref.finalize(strike := Strike(), signal.raise_signal, signal.SIGINT)
+                del strike
+            else:
+                type("Made", (), {"part": Strike()})
+sys.meta_path.insert(0, Finder())
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from corota.cli import program
+program()
+"""
+
+
+@pytest.mark.parametrize("way", ["lost", "another"])
+def test_an_interrupt_while_a_deck_is_read_ends_with_7(tmp_path, way, deck):
+    path = deck(tmp_path / "deck.inp")
+    done = subprocess.run(
+        [sys.executable, "-c", WHILE_IMPORTING, "run", str(path), way],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (7, "corota: error: interrupted\n")
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_signal_ends_the_run_with_7_and_all_increments_on_disk(tmp_path, number, deck):
     path = deck(

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import atexit
+import contextlib
 import errno
 import gc
 import os
+import signal
 import sys
 from typing import TYPE_CHECKING, NoReturn
 
@@ -62,6 +64,9 @@ def program() -> NoReturn:
     modules are imported.
     """
     gc.disable()
+    reading = sys.argv[1:2] and sys.argv[1] in READING
+    if reading and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, end_at_once)
     code = main()
     threads = sys.modules.get("threading")
     if {"mpi4py", "petsc4py"} & set(sys.modules) or (
@@ -76,6 +81,16 @@ def program() -> NoReturn:
         sys.exit(code)
     atexit._run_exitfuncs()
     os._exit(code)
+
+
+def end_at_once(number: int, frame: object) -> NoReturn:
+    """End the process on a signal before a job has results.
+
+    An exception in its place is lost, or becomes another one, where a module is being imported.
+    """
+    with contextlib.suppress(OSError):
+        os.write(2, b"corota: error: interrupted\n")
+    os._exit(7)
 
 
 def collect_garbage() -> None:

@@ -12,7 +12,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from corota.cli import collect_garbage
+from corota.cli import collect_garbage, end_at_once
 from corota.cli.progress import Progress, duration
 from corota.cli.reading import read_input
 from corota.cli.together import together
@@ -67,7 +67,9 @@ class Stop(BaseObserver):
             if number is None or signal.getsignal(number) is signal.SIG_IGN:
                 continue
             with contextlib.suppress(ValueError):  # not in the main thread
-                before[number] = signal.signal(number, handler)
+                found = signal.signal(number, handler)
+                # Files are closed on the way out.
+                before[number] = signal.default_int_handler if found is end_at_once else found
         ending = {getattr(signal, name) for name in self.ENDING if hasattr(signal, name)}
         with _second(ending & set(before)):
             try:
