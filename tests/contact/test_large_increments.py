@@ -233,3 +233,38 @@ def test_a_disc_that_nothing_presses_at_first_rolls(
     at the end would give a turn of 1.127 or .833 for 1."""
     exact = 2e-3 if disc == "rigid" else 2e-2
     np.testing.assert_allclose(rolled(travel, gap, method, disc, slave), 1.0, atol=exact)
+
+
+@pytest.mark.parametrize("height", [0.25, 0.5])
+@pytest.mark.parametrize("element", ["Q4I", "T6"])
+@pytest.mark.parametrize("method", METHODS)
+def test_a_block_that_a_spring_draws_back_slides_in_one_increment(
+    method: str, element: str, height: float
+) -> None:
+    """Friction takes mu N along the whole way; the block stays flat, far from tipping.
+
+    It stood on its corner: friction held it first, against a spring that pulled with 50 mu N.
+    """
+    load, mu, stiffness, way = 10.0, 0.3, 100.0, 0.8
+    body = ct.mesh.rectangle(1.0, 0.5, nx=4, ny=2, cell="tri6" if element == "T6" else "quad4")
+    spring = ct.mesh.line([(1.0, height), (11.0, height)], n=1)
+    mesh = ct.mesh.assembly(body=body, spring=spring)
+    model = ct.Model(mesh)
+    model.section("body", element=element, material=ct.Elastic(E=1e9, nu=0.3))
+    model.spring("spring", stiffness)
+    start, end = (int(mesh.nodes_of(f"spring.{name}")[0]) for name in ("start", "end"))
+    side = mesh.nodes_of("body.right")
+    corner = int(side[np.argmin(np.abs(mesh.points[side, 1] - height))])
+    for direction in ("x", "y"):
+        model.equation((start, direction, 1.0), (corner, direction, -1.0))
+    floor = ct.RigidCurve.line((-5.0, 0.0), (6.0, 0.0))
+    model.contact("body.bottom", floor, method=method, friction=mu, name="floor")
+    steps = [ct.Static(increments=1) for _ in range(4)]
+    steps[0].force("body.top", y=-load)
+    for step, x in zip(steps, (0.0, way, -way, way), strict=True):
+        step.fix([end], x=x, y=0.0)
+    results = solve(model, *steps)
+    stretch = mu * load / stiffness
+    exact = mu * load * (5.0 * way - 5.0 * stretch)
+    assert scalar(results, "ALLFD") == pytest.approx(exact, rel=1e-4)
+    assert np.abs(results.frames[-1].U[mesh.nodes_of("body.bottom"), 1]).max() < 1e-6

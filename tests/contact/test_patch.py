@@ -115,7 +115,13 @@ def test_a_uniform_pressure_is_uniform_at_nodes_of_quadratic_edges(element, law)
 
 @pytest.mark.parametrize(
     ("element", "left", "stiff"),
-    [("Q4I", 0.0, 0.25), ("Q8R", 0.0, 1.0 / 12.0), ("Q4I", 0.1, 0.0), ("Q4I", 0.125, 0.0)],
+    [
+        ("Q4I", 0.0, 0.25),
+        ("Q4I", 0.002, 0.25),
+        ("Q8R", 0.0, 1.0 / 12.0),
+        ("Q4I", 0.1, 0.0),
+        ("Q4I", 0.125, 0.0),
+    ],
 )
 @pytest.mark.parametrize("rigid", [False, True])
 def test_a_note_says_the_error_of_a_law_at_the_ends_of_the_master(element, left, stiff, rigid):

@@ -440,7 +440,9 @@ class ContactEquations:
         early, border = self.corrections <= 2 and not self.bounded, self.border
         if not (early or border.left.any() or border.left_by_others.any()):
             return found, states
-        released = [np.zeros(p.n, bool) for p in self.term.pairs]
+        # What slid before may go back by an edge: friction that holds it there first tips a body.
+        slid = [(s == SLIPPING) & early & (self.corrections == 1) for s in states]
+        released, back = list(slid), [np.zeros(p.n, bool) for p in self.term.pairs]
         for count in range(1 + WAITED):
             new = [s.copy() for s in states]
             slip_directions = list(self.slip_directions)
@@ -468,11 +470,15 @@ class ContactEquations:
                 slip_direction = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction)
                 if rates is not None:
                     # What stuck without traction, or goes far, takes the direction of its slip.
+                    # What slid and then slips in neither direction sticks.
                     slip = (terms.slip + rates[k][1]) * slip_direction
-                    wrong = released[k] & (slip > SMALL * pair.edge * pair.full)
+                    least = np.where(slid[k], 1.0, SMALL)
+                    wrong = released[k] & (slip > least * pair.edge * pair.full)
                     slip_direction = np.where(wrong, -slip_direction, slip_direction)
                     turned = turned or bool(wrong.any())
-                released[k] |= over
+                    s[wrong & back[k]] = CLOSED
+                    back[k] = wrong & slid[k]
+                released[k] = (released[k] | over) & (s != CLOSED)
                 slip_directions[k] = slip_direction
             same = all(np.array_equal(a, b) for a, b in zip(new, states, strict=True))
             if same and not turned:

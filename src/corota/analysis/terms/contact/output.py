@@ -454,7 +454,8 @@ def partly_covered_note(pair: Pair, area: Floats, x: Floats, labels: Ints) -> st
         length = float(np.hypot(*along))
         part = away @ along / length**2
         off = np.abs(away[:, 0] * along[1] - away[:, 1] * along[0]) / length
-        off[(part <= -SAME) | (part >= 1.0 - SAME)] = np.inf
+        # A node a little beyond the end still presses.
+        off[(part <= -0.5) | (part >= 1.0 - SAME)] = np.inf
         if not len(ends) or off.min() > pair.reach:
             continue
         taken = 0.5 if middle < 0 else 1.0 / 6.0 + 2.0 / 3.0 * inside[row, 2]
