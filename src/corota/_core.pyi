@@ -330,9 +330,16 @@ def add_contact_forces(
     force: _Floats,
     size: _Floats | None = ...,
 ) -> None: ...
-def lemke(
-    c: _Floats, m: _Floats, start: NDArray[np.bool_] | None = ...
-) -> tuple[_Floats, NDArray[np.bool_]] | None: ...
+def unilateral(
+    states: NDArray[np.int8],
+    directions: _Floats,
+    friction: _Floats,
+    rubs: NDArray[np.bool_],
+    normal: _Floats,
+    tangent: _Floats,
+    start: NDArray[np.int8] | None = ...,
+    slides: bool = ...,
+) -> tuple[_Floats, NDArray[np.int8], _Floats, _Floats, _Floats] | None: ...
 def times_of_crossing(
     first: _Floats,
     last: _Floats,

@@ -10,7 +10,7 @@ use std::collections::HashSet;
 /// Size of a pivot that is rounding, relative to the largest entry of its column.
 const ZERO: f64 = 1e-11;
 /// Relative difference of ratios that is rounding.
-const TIE: f64 = 1e-10;
+pub(super) const TIE: f64 = 1e-10;
 /// Relative error of a solution from a given basis, the square root of rounding: a basis that is
 /// singular to rounding has lost all digits, and half of them are enough.
 const HALF_OF_THE_DIGITS: f64 = 3.16e-5;
@@ -36,7 +36,7 @@ pub fn lemke(c: &[f64], m: &[f64], start: Option<&[bool]>) -> Option<Solution> {
 }
 
 /// Largest size of some numbers.
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |most, v| most.max(v.abs()))
 }
 
@@ -223,6 +223,17 @@ mod tests {
         assert!(lemke(&[-1.0], &[-1.0], None).is_none());
         assert!(lemke(&[1.0, f64::NAN], &[1.0, 0.0, 0.0, 1.0], None).is_none());
         assert!(lemke(&[], &[], Some(&[])).is_some());
+    }
+
+    #[test]
+    fn from_a_singular_basis_no_wrong_solution_comes() {
         assert!(lemke(&[-1.0, 1.0], &[0.0, 1.0, -1.0, 0.0], Some(&[true, false])).is_none());
+        // Two equal rows whose elimination leaves a pivot of rounding.
+        let m = [2.0, 1.0, 1.0, 1.0, 3.0, 3.0, 1.0, 3.0, 3.0].map(|m| 1.1 * m);
+        let c = [-1.0, -0.3, -0.31];
+        if let Some((x, _)) = lemke(&c, &m, Some(&[true; 3])) {
+            let row = |i: usize| c[i] + (0..3).map(|j| m[3 * i + j] * x[j]).sum::<f64>();
+            assert!((0..3).all(|i| x[i].min(row(i)).abs() < 1e-9));
+        }
     }
 }

@@ -26,6 +26,7 @@ pub mod slip;
 pub mod terms;
 pub mod travel;
 pub mod tree;
+pub mod unilateral;
 
 pub use curve::{Edge, Shape};
 pub use law::ContactLaw;

@@ -2,36 +2,82 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::contact::{bad, rows};
-use crate::contact::complementarity;
 use crate::contact::crossing::{self, Piece, Way};
+use crate::contact::law::State;
+use crate::contact::unilateral::Linearized;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 
 type Floats<'py> = PyReadonlyArray1<'py, f64>;
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
-type Found<'py> = Option<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>)>;
 
-/// Solve ``y = c + m x, x >= 0, y >= 0, x y = 0`` by Lemke's method; rows and columns of like size.
+type Solved<'py> = Option<(
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<i8>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+)>;
+
+/// Solve all conditions of unilateral constraints linearized about states: ``contact/unilateral.rs``.
 ///
-/// ``start`` are the x in the basis at the beginning; their y are zero. Gives x and which of them are
-/// in the basis at the end. None if the method ends on a ray, where there is no solution or it
-/// cannot find one, or if the basis of ``start`` is singular.
+/// Of n constraints: ``states``, ``directions`` of the tractions of what slips, ``friction``, and
+/// ``rubs``, which of them have shear tractions. Rows of ``normal`` and ``tangent`` (n, 1 + 2 n) hold
+/// the value without inputs, then the changes by two inputs of each constraint; ``tangent`` has rows
+/// for those with shear tractions alone. ``start`` are states to begin from; with ``slides``, what
+/// sticks slips to begin with where nothing else is found. Gives the inputs (2 n,), states,
+/// directions, pressures and tractions (n,); None where none are found.
 #[pyfunction]
-#[pyo3(signature = (c, m, start=None))]
-fn lemke<'py>(
+#[pyo3(signature = (states, directions, friction, rubs, normal, tangent, start=None, slides=false))]
+#[allow(clippy::too_many_arguments)]
+fn unilateral<'py>(
     py: Python<'py>,
-    c: Floats<'py>,
-    m: Rows<'py>,
-    start: Option<PyReadonlyArray1<'py, bool>>,
-) -> PyResult<Found<'py>> {
-    let (c, start) = (c.as_array().to_vec(), start.as_ref().map(|s| s.as_slice()).transpose()?);
-    let n = c.len();
-    if m.as_array().shape() != [n, n] || start.is_some_and(|s| s.len() != n) {
-        return Err(bad(format!("m and start do not fit {n} numbers")));
+    states: PyReadonlyArray1<'py, i8>,
+    directions: Floats<'py>,
+    friction: Floats<'py>,
+    rubs: PyReadonlyArray1<'py, bool>,
+    normal: Rows<'py>,
+    tangent: Rows<'py>,
+    start: Option<PyReadonlyArray1<'py, i8>>,
+    slides: bool,
+) -> PyResult<Solved<'py>> {
+    let as_states = |numbers: &PyReadonlyArray1<'_, i8>| -> Vec<State> {
+        numbers.as_array().iter().map(|&number| State::of(number)).collect()
+    };
+    let flat = |rows: &Rows<'_>| -> Vec<f64> { rows.as_array().iter().copied().collect() };
+    let states = as_states(&states);
+    let n = states.len();
+    let directions = directions.as_array().to_vec();
+    let mu = friction.as_array();
+    let friction: Vec<Option<f64>> =
+        rubs.as_array().iter().zip(mu).map(|(&rubs, &mu)| rubs.then_some(mu)).collect();
+    let start = start.as_ref().map(as_states);
+    let counts = [directions.len(), friction.len(), mu.len(), start.as_ref().map_or(n, Vec::len)];
+    let rubbing = friction.iter().flatten().count();
+    let fits = |rows: &Rows<'_>, n: usize| rows.as_array().shape() == [n, counts[0] * 2 + 1];
+    if !fits(&normal, n) || !fits(&tangent, rubbing) || counts != [n; 4] {
+        return Err(bad(format!("the arrays do not fit {n} constraints")));
     }
-    let m: Vec<f64> = m.as_array().iter().copied().collect();
-    let found = py.detach(|| complementarity::lemke(&c, &m, start));
-    Ok(found.map(|(x, basic)| (x.into_pyarray(py), basic.into_pyarray(py))))
+    let (normal, tangent) = (flat(&normal), flat(&tangent));
+    let found = py.detach(|| {
+        let constraints = Linearized {
+            states: &states,
+            directions: &directions,
+            friction: &friction,
+            normal: &normal,
+            tangent: &tangent,
+        };
+        constraints.solve(start.as_deref(), slides)
+    });
+    Ok(found.map(|found| {
+        (
+            found.inputs.into_pyarray(py),
+            found.states.into_pyarray(py),
+            found.directions.into_pyarray(py),
+            found.pressures.into_pyarray(py),
+            found.tractions.into_pyarray(py),
+        )
+    }))
 }
 
 fn pieces(array: &PyReadonlyArray3<'_, f64>) -> PyResult<Vec<Piece>> {
@@ -78,6 +124,6 @@ fn times_of_crossing<'py>(
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
-    m.add_function(wrap_pyfunction!(lemke, m)?)?;
+    m.add_function(wrap_pyfunction!(unilateral, m)?)?;
     m.add_function(wrap_pyfunction!(times_of_crossing, m)?)
 }

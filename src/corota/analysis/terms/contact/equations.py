@@ -344,16 +344,12 @@ class ContactEquations:
     def pairs(self, contact_state: ContactState) -> Iterator[Each]:
         return self.term.each(contact_state.terms, contact_state.multipliers)
 
-    def gap_rates(
-        self, at: Evaluation, du: Floats, only: int | None = None
-    ) -> list[tuple[Floats, Floats]]:
-        """Changes of weighted gaps and slips of each pair, or one, by columns of displacements."""
+    def gap_rates(self, at: Evaluation, du: Floats) -> list[tuple[Floats, Floats]]:
+        """Changes of weighted gaps and slips of each pair by columns of displacements."""
         moved = np.stack([self.system.in_space(u) for u in du.reshape(self.n, -1).T], axis=1)
         moved = np.concatenate([moved, np.zeros((1, moved.shape[1]))])
         out = []
-        for k, (pair, terms, _) in enumerate(self.pairs(at.contact_state)):
-            if only is not None and k != only:
-                continue
+        for pair, terms, _ in self.pairs(at.contact_state):
             where, parts = pair.dofs(terms.variables), []
             for gradient in (terms.gap_gradient, terms.slip_gradient):
                 change = np.zeros((pair.n, moved.shape[1]))

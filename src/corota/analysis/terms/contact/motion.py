@@ -14,9 +14,8 @@ A pressure law takes the mean ``(g0 + 2 g1 + g2) / 4`` of three gaps, which keep
 is too stiff for the increment, the gap at its end, as if there were none. Both are stable.
 
 The forces ``z = (p, q)`` of some constraints change their gaps and slips by ``A z``, where
-``A = dt^2 G M^-1 G^T`` is symmetric and at least semidefinite. The set of closed and slipping
-constraints is found by Newton's method; where that cycles, by Lemke's method for the whole
-complementarity problem.
+``A = dt^2 G M^-1 G^T`` is symmetric and at least semidefinite. Which are closed and slip, the core
+finds from the set of the increment before (`unilateral`).
 
 Implicit increments end where separate surfaces meet: a wall does not act on a body in flight, and
 an increment limited only by its own error may end at any depth behind it. The time to contact
@@ -43,8 +42,6 @@ from corota.analysis.terms.contact.gaps import (
     COMPLIANCE,
     OPEN,
     PATIENCE,
-    SAME,
-    SLIPPING,
     SMALL,
     WAITED,
     ContactState,
@@ -436,7 +433,7 @@ class UnilateralConstraints:
     tied : ndarray of bool, shape (m,)
         Constraints whose gap and slip stay zero.
     tolerance : ndarray, shape (m,)
-        Gaps and slips that are rounding.
+        Gaps that are rounding.
     soft : ndarray, shape (m,)
         Gap that a law takes, without these forces.
     share : ndarray, shape (m,)
@@ -459,12 +456,10 @@ class UnilateralConstraints:
     ruled: Bools
     law: Law
 
-    def __post_init__(self) -> None:
-        self.m, self.t = len(self.gap), len(self.slip)
-        self._diagonal = np.diagonal(self.matrix)
-
     def solve(self, state: States, sense: Floats) -> tuple[Floats, States, Floats] | None:
         """Forces, states and senses of slip; None where none are found.
+
+        Laws are linearized at their gaps, from those without forces on.
 
         Parameters
         ----------
@@ -478,155 +473,63 @@ class UnilateralConstraints:
         z : ndarray, shape (m + t,)
         state, sense : ndarray
         """
-        found = self._newton(state, sense)
-        if found is not None:
-            return found
-        z = self._pivoted()
-        if z is None:
-            return None
-        p, q = z[: self.m], z[self.m :]
-        state = np.where((p > 0.0) | self.tied, CLOSED, OPEN).astype(np.int8)
-        bound = self.friction * p[self.of]
-        slips = (np.abs(q) >= bound * (1.0 - SAME)) & (p[self.of] > 0.0) & ~self.tied[self.of]
-        state[self.of[slips]] = SLIPPING
-        return z, state, np.where(q > 0.0, 1.0, -1.0)
-
-    # -- Newton's method on the set ----------------------------------------------------
-
-    def _newton(self, state: States, sense: Floats) -> tuple[Floats, States, Floats] | None:
-        pressure, slope = self.law(self.soft)
-        state = np.where(self.ruled & (slope == 0.0), OPEN, state).astype(np.int8)
-        soft = self.soft
-        seen: set[bytes] = set()
+        m, t, of, tied = len(self.gap), len(self.slip), self.of, self.tied
+        rest, matrix = np.concatenate([self.gap, self.slip]), self.matrix.copy()
+        matrix.flat[:: m + t + 1] *= 1.0 + COMPLIANCE * (np.append(self.ruled, np.zeros(t)) == 0.0)
+        held, start, normal, slips = np.append(tied, tied[of]), rest, np.arange(m), np.arange(t)
+        free = np.arange(m + t)
+        if tied.any():
+            # What is tied has no choice: it is eliminated.
+            normal, slips, free = (np.flatnonzero(~x) for x in (tied, tied[of], held))
+            of = np.searchsorted(normal, of[slips])
+            own = np.column_stack([matrix[np.ix_(held, free)], rest[held]])
+            back = np.linalg.solve(matrix[np.ix_(held, held)], own)
+            across = matrix[np.ix_(free, held)]
+            start = rest[free] - across @ back[:, -1]
+            matrix = matrix[np.ix_(free, free)] - across @ back[:, :-1]
+        n = len(normal)
+        unit = 1.0 / np.sqrt(np.maximum(matrix.diagonal(), 1e-300))
+        # Of each constraint its pressure and its traction.
+        table = np.zeros((len(free), 1 + 2 * n))
+        table[:, 0] = unit * start
+        table[:, 1::2] = unit[:, None] * matrix[:, :n] * unit[:n]
+        table[:, 2 + 2 * of] = unit[:, None] * matrix[:, n:] * unit[n:]
+        rubs, friction, direction = np.zeros(n, bool), np.zeros(n), np.ones(n)
+        rubs[of], friction[of] = True, self.friction[slips] * unit[of] / unit[n:]
+        direction[of] = sense[slips]
+        ruled = np.flatnonzero(self.ruled[normal])
+        law, plain = normal[ruled], table[ruled]
+        z, after, turned = np.zeros(m + t), state[normal], sense.copy()
+        gap, (pressure, slope) = self.soft, self.law(self.soft)
         for _ in range(WAITED * PATIENCE):
-            z = self._forces(state, sense, soft, pressure, slope)
-            gap, slip = self._motion(z)
-            soft, pressure, slope, settled = self._bent(z, gap)
-            after, turned = self._update(state, sense, z, gap, slip, slope)
-            if (after == state).all() and (turned == sense).all() and settled:
-                return z, state, sense
-            state, sense = after, turned
-            key = state.tobytes() + sense.tobytes()
-            if settled and key in seen:
-                return None
-            seen.add(key)
-        return None
-
-    def _forces(
-        self, state: States, sense: Floats, soft: Floats, pressure: Floats, slope: Floats
-    ) -> Floats:
-        """Forces of a set, laws linearized at their gaps, shape (m + t,)."""
-        m = self.m
-        closed = state != OPEN
-        free = np.concatenate([closed, (state == CLOSED)[self.of]])
-        z = np.zeros(m + self.t)
-        if not free.any():
-            return z
-        place = np.cumsum(free) - 1
-        columns = self.matrix[:, free]
-        slipping = np.flatnonzero((state == SLIPPING)[self.of])
-        ratio = sense[slipping] * self.friction[slipping]
-        columns[:, place[self.of[slipping]]] += ratio * self.matrix[:, m + slipping]
-        rest = -np.concatenate([self.gap, self.slip])[free]
-        rows = columns[free]
-        ruled = np.flatnonzero(self.ruled & closed)
-        at = place[ruled]
-        rows[at] *= self.share[ruled, None]
-        rest[at] = soft[ruled] - self.soft[ruled] + pressure[ruled] / -slope[ruled]
-        ridge = COMPLIANCE * self._diagonal[free]
-        ridge[at] = 1.0 / -slope[ruled]
-        rows[np.diag_indices(len(rows))] += ridge
-        z[free] = np.linalg.solve(rows, rest)
-        z[m + slipping] = ratio * z[self.of[slipping]]
-        return z
-
-    def _motion(self, z: Floats) -> tuple[Floats, Floats]:
-        """Gaps and slips with forces."""
-        moved = self.matrix @ z
-        return self.gap + moved[: self.m], self.slip + moved[self.m :]
-
-    def _bent(self, z: Floats, gap: Floats) -> tuple[Floats, Floats, Floats, bool]:
-        """Gaps of laws, their pressures and derivatives, and whether the forces have these."""
-        soft = self.soft + self.share * (gap - self.gap)
-        pressure, slope = self.law(soft)
-        missed = np.abs(z[: self.m] - pressure)
-        rounding = COMPLIANCE * pressure.max(initial=0.0) - slope * self.tolerance
-        return soft, pressure, slope, bool((missed <= rounding)[self.ruled].all())
-
-    def _update(
-        self, state: States, sense: Floats, z: Floats, gap: Floats, slip: Floats, slope: Floats
-    ) -> tuple[States, Floats]:
-        p, q = z[: self.m], z[self.m :]
-        hard, of = ~self.ruled, self.of
-        after = state.copy()
-        after[hard & (state == OPEN) & (gap < -self.tolerance)] = CLOSED
-        after[self.ruled & (state == OPEN) & (slope != 0.0)] = CLOSED
-        slips = ((state == CLOSED) & ~self.tied)[of]
-        slips &= np.abs(q) > self.friction * p[of] * (1.0 + COMPLIANCE)
-        after[of[slips]] = SLIPPING
-        sense = np.where(slips, np.where(q > 0.0, 1.0, -1.0), sense)
-        turned = (state == SLIPPING)[of] & (sense * slip > self.tolerance[of])
-        after[of[turned]] = CLOSED
-        after[hard & (state != OPEN) & (p < 0.0)] = OPEN
-        after[self.ruled & (slope == 0.0)] = OPEN
-        after[self.tied] = CLOSED
-        return after, sense
-
-    # -- the whole complementarity problem ---------------------------------------------
-
-    def _pivoted(self) -> Floats | None:
-        """Forces by Lemke's method, shape (m + t,); laws are linearized at their gaps.
-
-        With ``a = mu p + q`` and the slip as the difference of two, its unknowns are p, a and the
-        slip backwards; the gap, the slip forwards and ``2 mu p - a`` go with them.
-        """
-        rest = np.concatenate([self.gap, self.slip])
-        ridge = COMPLIANCE * self._diagonal
-        ridge[: self.m][self.ruled] = 0.0
-        matrix = self.matrix + np.diag(ridge)
-        # What is tied has no choice: it is eliminated.
-        held = np.concatenate([self.tied, self.tied[self.of]])
-        free = ~held
-        across = matrix[np.ix_(free, held)]
-        own = np.column_stack([matrix[np.ix_(held, free)], rest[held]])
-        tied = np.linalg.solve(matrix[np.ix_(held, held)], own)
-        matrix = matrix[np.ix_(free, free)] - across @ tied[:, :-1]
-        start = rest[free] - across @ tied[:, -1]
-        normal, tangent = np.flatnonzero(~self.tied), np.flatnonzero(~self.tied[self.of])
-        n, t, ruled = len(normal), len(tangent), np.flatnonzero(self.ruled[normal])
-        unit = 1.0 / np.sqrt(np.maximum(np.diagonal(matrix), 1e-300))
-        matrix = unit[:, None] * matrix * unit
-        bound = np.zeros((t, n))
-        of = np.searchsorted(normal, self.of[tangent])
-        bound[np.arange(t), of] = self.friction[tangent] * unit[of] / unit[n:]
-        law, soft, eye = normal[ruled], self.soft, np.eye(t)
-        for _ in range(WAITED * PATIENCE):
-            pressure, slope = self.law(soft)
-            acts = slope[law] < 0.0
-            give = np.where(acts, -1.0 / np.where(acts, slope[law], 1.0), 0.0)
-            rows, y = matrix.copy(), unit * start
-            rows[ruled] *= (acts * self.share[law])[:, None]
-            rows[ruled, ruled] += give * unit[ruled] ** 2
-            moved = self.soft[law] + self.share[law] * (start - rest[free])[ruled] - soft[law]
-            y[ruled] = unit[ruled] * (moved - pressure[law] * give)
-            size = float(np.abs(y).max(initial=0.0)) or 1.0
-            y[ruled[~acts]] = size  # a law that does not press at its gap is open
-            of_p = rows[:, :n] - rows[:, n:] @ bound
-            table = [
-                [of_p[:n], rows[:n, n:], np.zeros((n, t))],
-                [of_p[n:], rows[n:, n:], eye],
-                [2.0 * bound, -eye, 0.0 * eye],
-            ]
-            found = _core.lemke(np.append(y / size, np.zeros(t)), np.block(table))
+            if len(ruled):
+                acts = slope[law] < 0.0
+                after[ruled] = np.where(acts, np.maximum(after[ruled], CLOSED), OPEN)
+                give = np.where(acts, -1.0 / np.where(acts, slope[law], 1.0), 0.0)
+                table[ruled] = plain * (acts * self.share[law])[:, None]
+                table[ruled, 1 + 2 * ruled] += give * unit[ruled] ** 2
+                moved = self.soft[law] + self.share[law] * (start - rest[free])[ruled] - gap[law]
+                # A law that does not press at its gap is open.
+                apart = float(np.abs(table[:, 0]).max()) or 1.0
+                table[ruled, 0] = unit[ruled] * (moved - pressure[law] * give)
+                table[ruled[~acts], 0] = apart
+            found = _core.unilateral(
+                np.full(n, OPEN, np.int8), direction, friction, rubs, table[:n], table[n:], after
+            )
             if found is None:
                 return None
-            p, a = size * found[0][:n], size * found[0][n : n + t]
-            z = np.zeros(self.m + self.t)
-            z[free] = unit * np.append(p, a - bound @ p)
-            z[held] = -(tied[:, :-1] @ z[free] + tied[:, -1])
-            soft, _, _, settled = self._bent(z, self._motion(z)[0])
-            if settled:
-                return z
+            _, after, direction, p, q = found
+            z[free] = unit * np.append(p, q[of])
+            if tied.any():
+                z[held] = -(back[:, :-1] @ z[free] + back[:, -1])
+            gap = self.soft + self.share * (self.matrix @ z)[:m]
+            pressure, slope = self.law(gap)
+            missed = np.abs(z[:m] - pressure)
+            rounding = COMPLIANCE * pressure.max(initial=0.0) - slope * self.tolerance
+            if (missed <= rounding)[self.ruled].all():
+                states = np.full(m, CLOSED, np.int8)
+                states[normal], turned[slips] = after, direction[of]
+                return z, states, turned
         return None
 
 
