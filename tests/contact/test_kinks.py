@@ -63,6 +63,25 @@ def test_a_corner_comes_to_rest_at_the_bottom_of_a_groove(aside, near):
     assert any("kink" in note for note in notes)
 
 
+def test_a_pressure_law_in_a_shallow_groove():
+    """A node of a block on two soft flanks lies at the kink between them, with its area once.
+
+    The block is stiff beside them: its force is the stiffness of the bed times the mean overlap.
+    """
+    depth, stiffness, slope = 0.01, 50.0, 0.02
+    mesh = ct.mesh.rectangle(2.0, 1.0, 4, 2, "quad4", origin=(-1.0, 0.0))
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.0), plane="strain")
+    groove = ct.RigidCurve.polyline([[-2.0, 2.0 * slope], [0.0, 0.0], [2.0, 2.0 * slope]])
+    law = ct.PressureLaw("linear", stiffness)
+    model.contact("bottom", groove, law=law, method="node_to_segment", name="bed", start="keep")
+    model.fix("top", x=0.0, y=-depth)
+    last = ct.solve(model, ct.Static(), threads=1).frames[-1]
+    force = 2.0 * stiffness * (depth + 0.5 * slope)
+    assert last.scalars["bed: force y"] == pytest.approx(force, rel=0.01)
+    assert last.scalars["bed: force x"] == pytest.approx(0.0, abs=1e-6 * force)
+
+
 @pytest.mark.parametrize("number", [162, 306])
 def test_increments_go_on_from_an_equilibrium_at_a_kink(number):
     """A node in the dent that it makes in a yielding block rests on both flanks, over increments.
