@@ -271,3 +271,23 @@ def test_cards_that_are_wrong(tmp_path: Path) -> None:
         deck.write_text(DECK.replace(old, new).format(way=""))
         with pytest.raises(ct.DeckError, match=said):
             ct.read(deck)
+
+
+@pytest.mark.parametrize("owner", ["model", "call"])
+def test_changes_act_in_the_steps_of_the_model_and_in_those_of_the_call(owner: str) -> None:
+    """Half of a pulled body leaves it; so does the mean of its stress at the common nodes."""
+    model = ct.Model(ct.mesh.rectangle(2.0, 2.0, 1, 2))
+    model.section("all", element="Q4I", material=ct.Elastic(E, 0.0))
+    model.fix("left", x=0.0, y=None)
+    model.fix("bottom", x=None, y=0.0)
+    model.fix("right", x=0.02, y=None)
+    steps = [ct.Static(), ct.Static()]
+    steps[1].remove_elements([1])
+    if owner == "model":
+        model.steps = steps
+    results = ct.solve(model, steps if owner == "call" else None, threads=1)
+    assert results.history("RF1", at="right")[1:] == pytest.approx([2.0, 1.0], rel=1e-9)
+    stress = sorted(float(b.values["S"][0, 0, 0]) for b in results.frames[-1].fields)
+    assert stress == pytest.approx([0.0, 1.0])
+    middle = results.nodal("S11")[model.mesh.points[:, 1] == 1.0]
+    assert middle == pytest.approx(1.0)

@@ -180,12 +180,16 @@ class Analysis:
             for name in ("analyze", "factorize", "solve"):
                 if not callable(getattr(solver, name, None)):
                     raise InputError(f"a linear solver needs a method {name}; {solver!r} has none")
-        self.model, self.fields = model, fields
-        self.observers = Observers(observers)
-        self.results = Results(model, keep=keep)
         self.steps, notes = keep_nlgeom(
             listed_steps(steps), any(s.material.local_strain for s in model.sections)
         )
+        if any(step.element_changes for step in self.steps):
+            # Cells that leave and join alike are grouped by the steps of the model.
+            model = copy(model)
+            model.steps = self.steps
+        self.model, self.fields = model, fields
+        self.observers = Observers(observers)
+        self.results = Results(model, keep=keep)
         self.results.steps = self.steps
         self.masses = masses_of_steps(self.steps)
         self.requests = in_force(self.steps)
