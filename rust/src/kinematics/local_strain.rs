@@ -211,6 +211,19 @@ impl LocalStrain {
         }
     }
 
+    /// Cosine and sine of the rotation in the local gradient (polar decomposition) that takes this
+    /// strain to the axes of the local frame; the linear strain has those axes already.
+    pub fn rotation(self, h: &[f64; 4]) -> [f64; 2] {
+        match self {
+            Self::Linear | Self::Stressed(_) => [1.0, 0.0],
+            Self::GreenLagrange | Self::Logarithmic => {
+                let (c, s) = (2.0 + h[0] + h[3], h[2] - h[1]);
+                let size = c.hypot(s);
+                [c / size, s / size]
+            }
+        }
+    }
+
     /// Cauchy stress xx, yy, zz, xy in the axes of the local frame, from the stress conjugate
     /// to this strain, the stress through the thickness and the thickness stretch.
     pub fn cauchy(self, h: &[f64; 4], s: [f64; 3], zz: f64, stretch: f64) -> [f64; 4] {

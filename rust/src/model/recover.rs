@@ -16,7 +16,7 @@ pub struct Fields {
     pub points: Vec<f64>,
     /// Cauchy stress in global axes, rows xx, yy, zz, xy, `[n, p, 4]`.
     pub stress: Vec<f64>,
-    /// Local strain turned to global axes, engineering shear, `[n, p, 4]`.
+    /// Strain in global axes, engineering shear, `[n, p, 4]`.
     pub strain: Vec<f64>,
     /// Equivalent stress of von Mises, `[n, p]`.
     pub mises: Vec<f64>,
@@ -291,7 +291,12 @@ pub(super) fn chunk<const N: usize, const M: usize>(
                 if kernels.ring { 1.0 + at.hoop } else { section.strain.stretch(strain_zz) };
             let [xx, yy, zz, xy] = section.strain.cauchy(&h, stress, stress_zz, stretch);
             let s_global = turn([xx, yy, xy], frame.cos, frame.sin);
-            let e_global = turn([total[0], total[1], 0.5 * total[2]], frame.cos, frame.sin);
+            // Finite strains are functions of the stretch: the rest of the rotation takes them to
+            // global axes, as it takes the stress.
+            let [rest_cos, rest_sin] = section.strain.rotation(&h);
+            let cos = frame.cos * rest_cos - frame.sin * rest_sin;
+            let sin = frame.sin * rest_cos + frame.cos * rest_sin;
+            let e_global = turn([total[0], total[1], 0.5 * total[2]], cos, sin);
             let at_strain = at.strain;
             let at = e * n_points + p;
             let mut position = [0.0; 2];
@@ -315,7 +320,7 @@ pub(super) fn chunk<const N: usize, const M: usize>(
             for (i, (kind, values)) in law.tensors().iter().zip(&mut out.tensors).enumerate() {
                 let [xx, yy, zz, xy] = law.tensor(i, state);
                 let shear = if kind.engineering { 0.5 } else { 1.0 };
-                let t = turn([xx, yy, shear * xy], frame.cos, frame.sin);
+                let t = turn([xx, yy, shear * xy], cos, sin);
                 values[4 * at..4 * at + 4].copy_from_slice(&[t[0], t[1], zz, t[2] / shear]);
             }
             for v in at_strain {

@@ -306,7 +306,9 @@ class Loading:
         """Attract edges by an opposite electrode, parallel to them, across the current gap.
 
         The traction is ``1/2 permittivity (voltage / gap)^2``, without fringe fields; it follows
-        the edges in geometrically nonlinear steps, and pull-in is a limit point of a path. The
+        the edges in geometrically nonlinear steps, and pull-in is a limit point of a path. Free
+        ends of the edges are pulled along the electrode as well, by ``1/2 permittivity
+        voltage^2 / gap`` times the thickness: the energy grows with the length that faces it. The
         force goes with the square of the voltage: so does the load factor, which is
         (voltage so far / `voltage`)^2.
 
