@@ -113,7 +113,10 @@ def signals(count: int, seed: int, folder: Path) -> Counter[str]:
     outcomes: Counter[str] = Counter()
     rng = random.Random(seed)
     deck = strip_deck(20, 2, *SLOW)
-    for k in range(count):
+    # A shell's background jobs ignore SIGINT, and what they start does, too.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    whole = 0.0
+    for k in range(-1, count):
         _fresh(folder)
         (folder / "deck.inp").write_text(deck)
         number = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)[k % 3]
@@ -126,7 +129,12 @@ def signals(count: int, seed: int, folder: Path) -> Counter[str]:
         ) as run:
             assert run.stdout is not None
             run.stdout.readline()
-            time.sleep(rng.uniform(0.0, 1.0))
+            begin = time.perf_counter()
+            if k < 0:  # undisturbed, for its time
+                run.communicate()
+                whole = time.perf_counter() - begin
+                continue
+            time.sleep(rng.uniform(0.0, whole))
             run.send_signal(number)
             try:
                 _, said = run.communicate(timeout=60)
