@@ -55,13 +55,27 @@ fn crossing([first, last]: [&Piece; 2], way: &Way, depth: f64) -> f64 {
     if !(a > way.outside && b < -depth) {
         return f64::INFINITY;
     }
-    let a = if a <= depth { 0.0 } else { a };
-    let share = a / (a - b);
+    let share = if a <= depth { 0.0 } else { first_root(first, last, way) };
     let at = |p, q| add(p, times(sub(q, p), share));
     let met = [at(first[0], last[0]), at(first[1], last[1])];
     // A node that starts on a piece may leave it around a corner.
     let hit = is_beside(&met, at(way.from, way.to)) && (share > 0.0 || is_beside(last, way.to));
     if hit { share } else { f64::INFINITY }
+}
+
+/// Share of its way after which a node that ends inside is on the line through a piece.
+///
+/// Where the piece turns, its distance is quadratic: a straight line between both ends would meet
+/// it too early, and beside a corner that the node leaves it around.
+fn first_root(first: &Piece, last: &Piece, way: &Way) -> f64 {
+    let (p, q, x) = (sub(last[0], first[0]), sub(last[1], first[1]), sub(way.to, way.from));
+    let (d, r) = (sub(first[1], first[0]), sub(way.from, first[0]));
+    let (turns, moves) = (sub(q, p), sub(x, p));
+    let cross = |a: Vec2<f64>, b: Vec2<f64>| b[1] * a[0] - b[0] * a[1];
+    // Distance times length, negative outside: c + b t + a t^2, which has one root up to 1.
+    let (a, b, c) = (cross(turns, moves), cross(d, moves) + cross(turns, r), cross(d, r));
+    let root = (b * b - 4.0 * a * c).max(0.0).sqrt();
+    2.0 * -c / (b + root)
 }
 
 /// Distance of a point from the line through a piece, positive outside.
