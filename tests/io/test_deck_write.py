@@ -203,7 +203,6 @@ def _without_card(model: ct.Model) -> None:
         ),
         (lambda m: m.steps.append(ct.Static(at_limit="follow")), "step 1: at_limit of Static"),
         (lambda m: m.steps.append(ct.Static(plastic_increment=0.01)), "step 1: plastic_increment"),
-        (lambda m: m.steps.append(ct.Static(plastic_tolerance=0.0)), "step 1: plastic_tolerance"),
         (lambda m: m.steps.append(ct.Static(tolerance=1e-6)), "step 1: a tolerance of 1e-06"),
         (lambda m: m.steps.append(ct.Dynamic(scheme="generalized_alpha")), "with rho_inf=0.8"),
         (lambda m: m.steps.append(ct.Dynamic(mass="lumped")), "step 1: mass='lumped'"),

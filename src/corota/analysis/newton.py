@@ -95,8 +95,8 @@ class Settings:
     reuse: Callable[[Evaluation], Floats] | None = None
     #: Iterations without a clearly smaller residual after which the attempt is given up; 0: never.
     patience: int = 0
-    #: Iteration from which on a line search is strict, if supports do not move; 0: never.
-    search: int = 0
+    #: Line search in every iteration in which supports do not move.
+    search: bool = False
     #: Residual after the first iteration above which the attempt is given up.
     first: float = math.inf
 
@@ -199,7 +199,7 @@ def newton(
             outcome.reason = "the linear solution is not finite"
             return outcome
         before = size
-        strict = 0 < settings.search <= iteration and not moved
+        strict = settings.search and not moved
         trial = _search(system, u, du, at, step_time, before, iteration, strict, rule)
         if isinstance(trial, str):
             outcome.reason = trial

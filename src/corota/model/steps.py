@@ -391,11 +391,6 @@ class Static(Step):
     plastic_increment : float
         Largest growth of the equivalent plastic strain at any point in one increment of load
         control; larger increments are cut back. 0 for no limit.
-    plastic_tolerance : float
-        Largest error of an increment of load control by its plastic flow: the work on it of the
-        difference of stress between one step of the return map and two, over the plastic work and
-        the elastic energy. Larger increments are cut back. Proportional loading has none. 0 for no
-        limit; there is none with contact and ties.
     """
 
     increments: int = 0
@@ -406,7 +401,6 @@ class Static(Step):
     at_limit: Literal["stop", "follow"] = "stop"
     at_bifurcation: Literal["warn", "stop", "follow"] = "warn"
     plastic_increment: float = 0.0
-    plastic_tolerance: float = 0.03
 
     procedure = "static"
     run = staticmethod(lazy("corota.analysis.procedures.static:static_step"))
@@ -415,7 +409,6 @@ class Static(Step):
 
     def __post_init__(self) -> None:
         number(self.plastic_increment, "plastic_increment", self.where, least=0.0)
-        number(self.plastic_tolerance, "plastic_tolerance", self.where, least=0.0)
         choose_attribute(self, "at_limit", ("stop", "follow"), "at_limit", self.where)
         self._control_numbers()
         choose_attribute(self, "at_bifurcation", AT_BIFURCATION, "at_bifurcation", self.where)

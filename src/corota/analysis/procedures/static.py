@@ -24,7 +24,6 @@ from corota.analysis.newton import Outcome, ResidualNorms, Settings
 from corota.analysis.procedures.carried_bodies import carried_bodies
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
-from corota.model import elements
 from corota.model.material_table import MaterialTable
 from corota.model.rates import Norton
 
@@ -45,7 +44,6 @@ relax = lazy("corota.analysis.terms.contact.relaxation:relax")
 driven = lazy("corota.analysis.procedures.stopping:driven")
 explanation = lazy("corota.analysis.procedures.stopping:explanation")
 passed = lazy("corota.analysis.procedures.stopping:passed")
-plastic_error = lazy("corota.analysis.procedures.plastic_error:plastic_error")
 unstable = lazy("corota.analysis.procedures.stopping:unstable")
 remedies = lazy("corota.analysis.procedures.stopping:remedies")
 path_step = lazy("corota.analysis.procedures.path.arc_length:path_step")
@@ -61,7 +59,7 @@ UNCHANGED = 1e-9
 #: Error of the creep strain in an increment over the largest elastic strain, by default.
 CREEP_ERROR = 0.003
 #: Share of the increment that would have the allowed error of creep, and limits of its change.
-SAFETY, LEAST_SHARE, MOST_GROWTH = 0.9, 1e-3, 4.0
+CREEP_SAFETY, LEAST_SHARE, MOST_GROWTH = 0.9, 1e-3, 4.0
 #: Error over the allowed one that is none, and one that gives a note.
 LEAST_EXCESS, MUCH_EXCESS = 1e-12, 10.0
 #: Note of the iterations of such an attempt.
@@ -100,10 +98,7 @@ class StaticStepper(NewtonStepper):
     """Increments of load control."""
 
     kind = "static"
-    remembered = (
-        *("control", "rates", "moved", "lasted", "creep_error", "creep_excess", "elastic"),
-        *("largest_error", "worked", "largest_work"),
-    )
+    remembered = ("control", "rates", "moved", "creep_error", "creep_excess", "elastic")
 
     def __init__(self, loop: IncrementLoop, step: Static, stops: list[float]) -> None:
         super().__init__(loop, step, stops)
@@ -113,12 +108,6 @@ class StaticStepper(NewtonStepper):
         self.rates = (0.0, 0.0)
         #: Displacement over the last increment, if any material remembers it.
         self.moved: np.ndarray[tuple[int], np.dtype[np.float64]] | None = None
-        #: Duration of that increment [time].
-        self.lasted = 0.0
-        #: Error of the last attempt by its plastic flow, and the largest of the increments so far.
-        self.plastic_error = self.largest_error = 0.0
-        #: Plastic work of the last attempt, of the increments so far, and the largest work tried.
-        self.spent = self.worked = self.largest_work = 0.0
         #: Growth of the plastic strain in the last attempt.
         self.grown = 0.0
         #: Largest error of the creep strain that is allowed, if any; none: by the elastic strain.
@@ -146,14 +135,6 @@ class StaticStepper(NewtonStepper):
         self.elastic = 0.0
         if self.measures and not self.state.resumes:
             self.measure_creep()
-        alone = self.remembers and not loop.system.n_multipliers
-        #: Whether Newton's method may reach far with a line search. Contact states change on the
-        #: way, and hourglass forces of elements with one point depend on the increments.
-        self.searches = alone and not any(
-            elements.find(block.section.element).stabilized for block in blocks
-        )
-        #: Error of plastic flow that is allowed, if it is measured.
-        self.plastic_tolerance = step.plastic_tolerance if alone else 0.0
 
     @property
     def finished(self) -> bool:
@@ -197,7 +178,7 @@ class StaticStepper(NewtonStepper):
             else:
                 again.iterations += outcome.iterations
                 outcome, contact = again, its_contact
-        self.grown = self.erred = self.excess = self.plastic_error = self.spent = 0.0
+        self.grown = self.erred = self.excess = 0.0
         share = CUT
         if outcome.converged and not outcome.reason and step.lasting:
             outcome.reason, share = self.check_creep(target)
@@ -208,8 +189,6 @@ class StaticStepper(NewtonStepper):
                     f"the equivalent plastic strain grew by {self.grown:.3g}, "
                     f"{step.plastic_increment:g} is allowed in one increment"
                 )
-        if outcome.converged and not outcome.reason and self.plastic_tolerance:
-            outcome.reason, share = self.check_plasticity(outcome, target)
         if outcome.converged and not outcome.reason:
             self.check_stability(outcome, target)
         outcome.converged = outcome.converged and not outcome.reason
@@ -232,28 +211,11 @@ class StaticStepper(NewtonStepper):
         least = control.shortest if self.creep_tolerance is None else 0.0
         if self.excess <= 1.0 or dt <= least * (1.0 + SAME):
             return "", CUT
-        share = max(SAFETY / math.sqrt(self.excess), LEAST_SHARE, least / dt)
+        share = max(CREEP_SAFETY / math.sqrt(self.excess), LEAST_SHARE, least / dt)
         return (
             f"the creep strain of the increment has an error of {self.erred:.3g}, "
             f"{allowed:.3g} is allowed"
         ), share
-
-    def check_plasticity(self, outcome: Outcome, target: float) -> tuple[str, float]:
-        """Why the increment is too long for plastic flow, if it is, and the share to try next."""
-        self.plastic_error = plastic_error(self, outcome, target)
-        control, excess = self.control, self.plastic_error / self.plastic_tolerance
-        least = control.shortest
-        if (
-            self.step.fixed_increments
-            or excess <= 1.0
-            or target - control.time <= least * (1.0 + SAME)
-        ):
-            return "", CUT
-        share = min(max(SAFETY / excess, CUT), 0.5)
-        return (
-            "the direction of plastic flow changes too much in the increment: an error of "
-            f"{self.plastic_error:.2g}, {self.plastic_tolerance:g} is allowed"
-        ), max(share, least / (target - control.time))
 
     def measure_creep(self) -> None:
         """Find the elastic strain of the committed state, to which errors of creep are compared."""
@@ -329,7 +291,6 @@ class StaticStepper(NewtonStepper):
         first: float | None = None,
         before: int = 0,
         begin: Floats | None = None,
-        how: str = TURNED,
     ) -> tuple[Outcome, ContactIncrement | None]:
         """Newton's method from the committed state.
 
@@ -346,8 +307,6 @@ class StaticStepper(NewtonStepper):
             Iterations of the attempts before, for the log.
         begin : ndarray, shape (n_dofs,), optional
             First iterate, in place of that state.
-        how : str, optional
-            Note of the iterations from there, for the log.
 
         Returns
         -------
@@ -366,13 +325,10 @@ class StaticStepper(NewtonStepper):
         settings, report, contact = self.settings, self.report, None
         self.passed = None
         begin = state.u if begin is None else begin
-        if self.searches:
-            settings = replace(settings, search=2)
         if first is not None:
-            settings = replace(settings, search=1, first=first)
+            settings = replace(settings, search=True, first=first)
         if first is not None or before or begin is not state.u:
-            if begin is state.u:
-                how = UNLOADING if first is not None else ""
+            how = TURNED if begin is not state.u else UNLOADING if first is not None else ""
             report = _continued(report, before, how)
         try:
             outcome, contact = solve_increment(
@@ -460,7 +416,7 @@ class StaticStepper(NewtonStepper):
         moved = outcome.u - state.u
         rate = float(np.abs(moved).max(initial=0.0)) / dt
         self.rates = self.rates[0] or rate, rate
-        self.moved, self.lasted = (moved if self.remembers else None), dt
+        self.moved = moved if self.remembers else None
         state.energies.add_quasi_static(outcome.u, state.u, outcome.at)
         if state.at is not None:
             system.return_tangent(state.at)
@@ -485,18 +441,6 @@ class StaticStepper(NewtonStepper):
         control.accept(attempt.target, outcome.iterations)
         if self.grown > 0.0 and not self.step.fixed_increments:
             control.size = min(control.size, dt * self.step.plastic_increment / self.grown)
-        self.worked += self.spent
-        if 0.0 < self.plastic_error < math.inf:
-            self.largest_error = max(self.largest_error, self.plastic_error)
-            if not self.step.fixed_increments:
-                factor = SAFETY * self.plastic_tolerance / self.plastic_error
-                control.size = min(control.size, max(dt * factor, control.shortest))
-        if self.finished and self.largest_error > self.plastic_tolerance > 0.0:
-            state.notes.append(
-                f"increments of step {self.loop.number} are too long for plastic flow, whose "
-                f"direction changes in them: an error of up to {self.largest_error:.2g}, "
-                f"{self.plastic_tolerance:g} is allowed; take smaller increments"
-            )
         self.creep_error = max(self.creep_error, self.erred)
         if control.number > 1:  # what acts at once has no error
             self.creep_excess = max(self.creep_excess, self.excess)
@@ -506,7 +450,7 @@ class StaticStepper(NewtonStepper):
             self.measure_creep()
         if self.excess and not self.step.fixed_increments:
             # The error grows with the square of the increment.
-            factor = min(MOST_GROWTH, SAFETY / math.sqrt(self.excess))
+            factor = min(MOST_GROWTH, CREEP_SAFETY / math.sqrt(self.excess))
             least = control.shortest if self.measures else 0.0
             size = min(max(dt * factor, least), self.step.largest_increment)
             control.size = size if not self.grown else min(size, control.size)

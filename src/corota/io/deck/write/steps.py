@@ -151,7 +151,7 @@ class _Says:
 
 def _static(says: _Says) -> tuple[str, str]:
     step: Static = says.step
-    says.refuse("at_limit", "plastic_increment", "plastic_tolerance")
+    says.refuse("at_limit", "plastic_increment")
     if step.tolerance > 1e-9:
         raise UnsupportedError(
             f"step {says.index}: a tolerance of {step.tolerance:g} cannot be written to a deck, "
