@@ -183,3 +183,25 @@ def test_a_node_that_touches_leaves_around_a_corner(above: float) -> None:
     new[0, 1] = -1e-12
     rests = times_of_crossing(piece, piece, none, old, new, np.array([0]), start, 1e-9)
     assert np.isinf(rests).all()
+
+
+@pytest.mark.parametrize("turn", [-0.3, 0.02, 0.15, 0.5])
+@pytest.mark.parametrize("above", [1e-6, 1e-4, 1e-2])
+def test_nodes_at_rest_on_a_polygon_that_turns_are_not_passed(turn: float, above: float) -> None:
+    """A pad on a disc that spins stopped with a node passed through, which ended outside.
+
+    The distance of a node from a piece that turns is quadratic in time, if its ends move evenly.
+    """
+    angles = -np.linspace(0.0, 2.0 * np.pi, 41)  # the disc on the left, outside on the right
+    corners = [np.column_stack([np.cos(a), np.sin(a)])[::-1] for a in (angles, angles + turn)]
+    first, last = (np.stack([x[:-1], x[1:]], axis=1) for x in corners)
+    ends, count = np.full((40, 2), -1), 60
+    around = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    old = np.column_stack([np.cos(around), np.sin(around), np.zeros(count)]) * (1.0 + above)
+    nodes, start = np.arange(count), np.full(count, -1e-9)
+    rests = times_of_crossing(first, last, ends, old, old, nodes, start, 1e-9)
+    assert np.isinf(rests).all()
+    through = times_of_crossing(first, last, ends, old, 0.5 * old, nodes, start, 1e-9)
+    depth = 1.0 + above - np.cos(0.5 * turn) * np.cos(np.pi / 40)
+    assert np.isfinite(through).all()
+    assert through.max() <= 2.0 * depth / (1.0 + above) + 1e-12
