@@ -45,8 +45,8 @@ class Stage(Brief):
         Undeformed place of the reference point, which moves with the stage [length]; the mean of
         the nodes by default. Displacements and moments are those of this point.
     against : str or array_like of int, optional
-        Nodes of another body; motion, force and stiffness are then those relative to it, in axes
-        that move with it.
+        Nodes of another body, or the name of a stage before; motion, force and stiffness are then
+        those relative to it, in axes that move with it.
     input : str
         Name of the stage that drives this one, defined before: for ratios and efficiency.
     allowable : mapping of str to float, optional
@@ -183,9 +183,12 @@ class Stages:
         >>> round(float(results.history("stiffness xx", at="tip")[0]), 6)  # E A / L
         100.0
         """
-        if name in {stage.name for stage in self.stages}:
+        before = {stage.name: stage.nodes for stage in self.stages}
+        if name in before:
             raise InputError(f"there is a stage {name!r} already")
-        if input and input not in {stage.name for stage in self.stages}:
+        if isinstance(against, str):
+            against = before.get(against, against)
+        if input and input not in before:
             raise InputError(f"stage {name!r}: define the stage {input!r} that drives it before")
         self.stages.append(
             Stage(
