@@ -90,6 +90,6 @@ class Increments:
         self.size = share * (tried - self.time)
         if self.attempt > MAX_ATTEMPTS:
             return f"{MAX_ATTEMPTS} attempts failed"
-        if self.size < self.step.smallest_increment:
+        if self.size < self.step.smallest_increment * (1.0 - SAME):
             return f"the smallest increment, {self.step.smallest_increment:g}, is reached"
         return ""
