@@ -5,6 +5,7 @@ Unilateral constraints with friction: the same solution about every state and fr
 """
 
 import itertools
+from time import perf_counter
 
 import numpy as np
 import pytest
@@ -173,3 +174,19 @@ def test_constraints_with_friction_have_one_solution_about_every_state(seed):
         slips = after == 2
         assert np.abs(q - senses * mu * p)[slips].max(initial=0.0) < size
         assert (slip * senses)[slips].max(initial=0.0) < size
+
+
+def test_far_from_the_solution_the_sets_are_given_up():
+    """From states at random, sets may change for minutes before one comes back: here for 14 s."""
+    rng = np.random.default_rng(4)
+    n = 120
+    a = rng.normal(size=(2 * n, 2 * n + 4))
+    matrix, free = a @ a.T / (2 * n), rng.normal(size=2 * n)
+    given = [np.zeros(n, np.int8), np.ones(n), np.full(n, 0.2), np.ones(n, bool)]
+    table = np.column_stack([free, matrix.reshape(2 * n, 2, n).swapaxes(1, 2).reshape(2 * n, -1)])
+    whole = unilateral(*given, table[:n], table[n:])
+    begun = perf_counter()
+    near = unilateral(*given, table[:n], table[n:], rng.integers(0, 3, n).astype(np.int8))
+    assert perf_counter() - begun < 3.0
+    for found, expected in zip(near, whole, strict=True):
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-9)

@@ -10,18 +10,21 @@
 //!
 //! What is zero or positive goes with what it is complementary to: the gap, the pressure; the two
 //! sides of the bound with the slip forward and backward; the slack `mu p - d q` with the slip
-//! against the traction, and the other side of the bound with the slip along it. A. Klarbring, *A mathematical programming approach to
-//! three-dimensional contact problems with friction*, Comput. Methods Appl. Mech. Engrg. 58 (1986).
+//! against the traction, and the other side of the bound with the slip along it. A. Klarbring, *A
+//! mathematical programming approach to three-dimensional contact problems with friction*, Comput.
+//! Methods Appl. Mech. Engrg. 58 (1986).
 //!
 //! From states that are nearly right, all that break their condition change at once (block principal
 //! pivots: J. J. Judice, F. M. Pires, *A block principal pivoting algorithm for large-scale strictly
-//! monotone linear complementarity problems*, Comput. Oper. Res. 21 (1994)); where a set comes back,
-//! and without such states, Lemke's method solves the whole problem.
+//! monotone linear complementarity problems*, Comput. Oper. Res. 21 (1994)); where they do not
+//! become fewer, and without such states, Lemke's method solves the whole problem.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::complementarity::{TIE, largest, lemke};
 use super::law::State;
-use std::collections::HashSet;
+
+/// Changes of the set without fewer conditions that break, as proposed by Judice and Pires.
+const PATIENCE: usize = 10;
 
 /// Constraints linearized about states.
 ///
@@ -237,14 +240,15 @@ impl Problem {
         self.unknowns.iter().map(basic).collect()
     }
 
-    /// Solution by changes of the set of unknowns that are not zero; None where a set comes back.
+    /// Solution by changes of the set of unknowns that are not zero; None where the
+    /// conditions that break do not become fewer.
     fn by_sets(&self, of: &Linearized, start: &[bool]) -> Option<(Vec<f64>, Vec<bool>)> {
         let n = self.c.len();
         if !self.c.iter().chain(&self.m).all(|v| v.is_finite()) {
             return None;
         }
-        let (mut basic, mut seen) = (start.to_vec(), HashSet::new());
-        while seen.insert(basic.clone()) {
+        let (mut basic, mut fewest, mut waited) = (start.to_vec(), n + 1, 0);
+        while waited < PATIENCE {
             let x = self.solution(&basic)?;
             let rounding = TIE * largest(x.iter().copied());
             let mut wrong = vec![false; n];
@@ -257,9 +261,12 @@ impl Problem {
                     self.c[a] + parts().sum::<f64>() < -TIE * size
                 };
             }
-            if !wrong.contains(&true) {
+            let count = wrong.iter().filter(|&&wrong| wrong).count();
+            if count == 0 {
                 return Some((x.iter().map(|x| x.max(0.0)).collect(), basic));
             }
+            waited = if count < fewest { 0 } else { waited + 1 };
+            fewest = fewest.min(count);
             let mut pressed = None;
             for (a, &(i, unknown)) in self.unknowns.iter().enumerate() {
                 // What closes sticks first, and has no tractions once it opens.
