@@ -183,10 +183,9 @@ class Analysis:
         self.steps, notes = keep_nlgeom(
             listed_steps(steps), any(s.material.local_strain for s in model.sections)
         )
-        if any(step.element_changes for step in self.steps):
-            # Cells that leave and join alike are grouped by the steps of the model.
-            model = copy(model)
-            model.steps = self.steps
+        # Groups of cells that leave and join, tables and histories read the steps of the model.
+        model = copy(model)
+        model.steps = self.steps
         self.model, self.fields = model, fields
         self.observers = Observers(observers)
         self.results = Results(model, keep=keep)
