@@ -488,7 +488,7 @@ class ContactTerm(Term):
         damping = self._damping(step_time)
         state = ContactState(found, system.at_nodes(force), size, multipliers, damping)
         if len(self.fading):
-            state.force = state.force + max(1.0 - step_time / self.period, 0.0) * self.fading
+            state.force = state.force + self._left(step_time) * self.fading
         if len(self.law_force):
             now = self.forces(found, multipliers, shears=False, laws=True)[0]
             state.of_end = state.force + (1.0 - self.law_share) * now
@@ -511,10 +511,22 @@ class ContactTerm(Term):
         return self.system.at_nodes(force), size
 
     def _pressures(self) -> Floats:
-        """Pressures of all pairs on the nodes in the committed state, shape (n_dofs,)."""
+        """Pressures of all pairs on the nodes in the committed state, shape (n_dofs,).
+
+        With what is left of the forces of pairs that ended with the step.
+        """
         if self.at is None:
             return np.zeros(self.system.n_dofs)
-        return self.forces(self.at.acting, self.committed, shears=False)[0]
+        acts, widths = zip(*((pair.active, pair.width) for pair in self.pairs), strict=True)
+        acting = np.repeat(acts, widths)
+        force = self.forces(self.at.acting, self.committed * acting, shears=False)[0]
+        if len(self.fading):
+            force = force + self._left(self.time) * self.fading
+        return force
+
+    def _left(self, step_time: float) -> float:
+        """Share of the forces of pairs that ended with the step which is left at a time of it."""
+        return max(1.0 - step_time / self.period, 0.0)
 
     def _keep_law_force(self) -> None:
         """Keep the forces of pressure laws that the next increment begins with."""

@@ -3,9 +3,8 @@
 A semismooth Newton method chooses the state of each constraint by itself. Where constraints
 depend on each other, as at the friction bound of a body held only by friction, such choices
 may never converge. Here the linearized equations with all their conditions, a linear
-complementarity
-problem, are solved by pivoting (Lemke, in the core): every correction then satisfies all conditions
-to first order (the method of Josephy and Newton). Nothing is regularized.
+complementarity problem, are solved by pivoting (in the core): every correction then satisfies all
+conditions to first order (the method of Josephy and Newton). Nothing is regularized.
 
 Sources: A. Klarbring, *A mathematical programming approach to three-dimensional contact problems
 with friction*, Comput. Methods Appl. Mech. Engrg. 58 (1986); N. H. Josephy, *Newton's method for
