@@ -143,7 +143,7 @@ def mend_links(app: object, name: str, source: list[str]) -> None:
     here = f"{up}generated/" if not name.startswith("generated/") else up + "generated/"
     text = source[0]
     for page in ("CONTRIBUTING", "CHANGELOG"):
-        text = re.sub(rf"\]\((?:\.\./)+{page}\.md", f"]({here}{page.lower()}.md", text)
+        text = re.sub(rf"\]\((?:\.\./)*{page}\.md", f"]({here}{page.lower()}.md", text)
     text = re.sub(r"\]\((?:\.\./)+benchmarks/README\.md", f"]({here}benchmarks.md", text)
     text = EXAMPLE.sub(lambda m: f"[{m[1]}]({here}gallery/{gallery.page_name(m[2])}.md)", text)
     text = re.sub(r"\[([^\]]*)\]\((?:\.\./)+(?:benchmarks|tests|src|rust)[^)]*\)", r"\1", text)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import re
 import sys
 from pathlib import Path
@@ -106,6 +107,32 @@ def test_links_of_the_repository_lead_into_the_site(site: ModuleType) -> None:
         "[x](generated/gallery/gripper.md) [c](generated/gallery/contact-clip.md) "
         "[y](generated/contributing.md#z) [w](generated/benchmarks.md) v"
     )
+
+
+def test_links_of_all_pages_lead_to_pages(site: ModuleType) -> None:
+    """Building the site takes such links for errors; it is not part of every run of the tests."""
+    hidden = ("builder", "generated")
+    pages = {
+        str(path.relative_to(DOCS).with_suffix("")): path.read_text(encoding="utf-8")
+        for path in DOCS.rglob("*.md")
+        if path.relative_to(DOCS).parts[0] not in hidden
+    }
+    del pages["decks/syntax"]  # its sections are the pages of the keywords
+    for name, source in site.ROOT_PAGES.items():
+        text = (DOCS.parent / source).read_text(encoding="utf-8")
+        pages[f"generated/{name}"] = site._moved(text)
+    keywords = script("keyword_pages").pages(DOCS)
+    known = {*pages, "generated/cite", *(f"generated/keywords/{k[:-3]}" for k in keywords)}
+    made = ("generated/gallery/", "generated/reference/")
+    lost = []
+    for name, text in pages.items():
+        source = [text]
+        site.mend_links(None, name, source)
+        for link in re.findall(r"\]\((?!http)([^)#\s]+)\.md(?:#[^)]*)?\)", source[0]):
+            page = os.path.normpath(os.path.join(os.path.dirname(name), link))
+            if page not in known and not page.startswith(made):
+                lost.append(f"{name}: {link}.md")
+    assert not lost
 
 
 def test_every_example_is_in_the_gallery_and_linked_with_its_topic() -> None:
