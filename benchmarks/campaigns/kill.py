@@ -266,6 +266,10 @@ def struck_run(own: Whole, folder: Path, by_term: bool, rng: random.Random, tall
     else:
         tally.faults.append(f"{own.case.name}: never done {trail}")
         return
+    if own.code:
+        # A run that does not get to its end keeps the results of the one before, which was struck.
+        for path in folder.glob(f"{JOB}.previous.*"):
+            path.unlink()
     if differences := folder_differences(own.folder, folder):
         tally.faults.append(f"{own.case.name}: differs: {differences[:3]} {trail}")
         return

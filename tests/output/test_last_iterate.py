@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where the last attempt of a run that stopped ended: in Python, in a file, as a picture."""
 
+import h5py
 import numpy as np
 import pytest
 
@@ -37,3 +38,29 @@ def test_a_run_that_stopped_shows_its_last_iterate(tmp_path, monkeypatch, capsys
     assert results.last_iterate is None
     assert cli.main(["plot", "slope.vtkhdf", "--last-iterate"]) == 2
     assert "stopped without convergence" in capsys.readouterr().err
+
+
+def moved(path):
+    """Displacements of the last time step of a file."""
+    with h5py.File(path) as file:
+        return file["VTKHDF/PointData/displacement"][()][-27:]
+
+
+def test_a_resumed_run_that_stops_at_once_has_its_last_iterate(tmp_path):
+    """Nothing was written, and an empty hidden file was left."""
+    mesh = ct.mesh.rectangle(8.0, 1.0, 8, 2)
+    model = ct.Model(mesh, name="job")
+    metal = ct.Mises(E=1000.0, nu=0.3, yield_curve=[(8.0, 0.0), (15.0, 0.1)], rho=1.0)
+    model.section("all", element="Q4", material=metal)
+    model.fix("left")
+    model.force("right", y=-6.0)
+    model.steps = [ct.Dynamic(period=1.5, increments=15)]
+    with pytest.raises(ct.ConvergenceError):
+        ct.solve(model, observers=[ct.JobFiles(tmp_path, checkpoint_every=1)], threads=1)
+    iterate = tmp_path / "job.last_iterate.vtkhdf"
+    whole = moved(iterate)
+    iterate.unlink()
+    with pytest.raises(ct.ConvergenceError):
+        ct.resume(tmp_path / "job", model=model, threads=1)
+    np.testing.assert_array_equal(moved(iterate), whole)
+    assert not list(tmp_path.glob(".job*"))

@@ -79,6 +79,7 @@ def write_iterate(results: Results, path: Path) -> None:
 
     assert results.last_iterate is not None
     writer = VtkhdfWriter(path, results.model)
-    for frame in (results.frames[-1], results.last_iterate):
+    # A resumed run that stops at once has no state of its own before it.
+    for frame in (*results.frames[-1:], results.last_iterate):
         writer.add(replace(frame, scalars={}, fields=[], V=None, A=None, C=None))
     writer.close({})
