@@ -74,7 +74,7 @@ def write_modes(results: Results, path: Path) -> None:
 
 
 def write_iterate(results: Results, path: Path) -> None:
-    """Write the last converged state and the last iterate, as two time steps."""
+    """Write the last frame of a run, if it has one, and the last iterate, as time steps."""
     from corota.io.vtk.vtkhdf import VtkhdfWriter
 
     assert results.last_iterate is not None
