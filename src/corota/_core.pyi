@@ -8,6 +8,11 @@ from numpy.typing import NDArray
 
 __version__: str
 
+#: States of a constraint of contact.
+OPEN: int
+CLOSED: int
+SLIPPING: int
+
 _Floats = NDArray[np.float64]
 _Indices = NDArray[np.uint32]
 

@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota._core import CLOSED, OPEN, SLIPPING
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import make_solver
 from corota.analysis.procedures.explicit import diagonal
 from corota.analysis.terms.contact.motion import UnilateralConstraints
-from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from tests.support.models import cell
 from tests.support.pairs import quickly
 

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota._core import CLOSED, OPEN, SLIPPING
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.terms.contact.equations import ContactEquations, linearized
-from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.analysis.terms.contact.path import ContactPathEquations
 from corota.model.contact import METHODS
 

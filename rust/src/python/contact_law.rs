@@ -5,7 +5,7 @@ use super::contact::{bad, rows};
 use crate::contact::ContactLaw as Law;
 use crate::contact::active_set::{Constraints, Gradients};
 use crate::contact::law::pressure::Curve;
-use crate::contact::law::{NORMAL, TANGENTIAL};
+use crate::contact::law::{NORMAL, State, TANGENTIAL};
 use crate::contact::terms::WIDTH;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1};
 use pyo3::prelude::*;
@@ -282,5 +282,8 @@ fn add_contact_forces(
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(contact_laws, m)?)?;
     m.add_function(wrap_pyfunction!(add_contact_forces, m)?)?;
+    m.add("OPEN", State::Open as i8)?;
+    m.add("CLOSED", State::Closed as i8)?;
+    m.add("SLIPPING", State::Slipping as i8)?;
     m.add_class::<ContactLaw>()
 }

@@ -15,16 +15,10 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import lsqr
 
+from corota._core import CLOSED, OPEN, SLIPPING
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import ContactEquations
-from corota.analysis.terms.contact.gaps import (
-    CLOSED,
-    OPEN,
-    SLIPPING,
-    ContactState,
-    RightHandSides,
-    covered,
-)
+from corota.analysis.terms.contact.gaps import ContactState, RightHandSides, covered
 from corota.errors import UnsupportedError
 
 if TYPE_CHECKING:

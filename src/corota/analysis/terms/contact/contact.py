@@ -14,15 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import (
-    OPEN,
-    SAME,
-    SLIPPING,
-    ContactState,
-    Terms,
-    covered,
-    mean,
-)
+from corota._core import OPEN, SLIPPING
+from corota.analysis.terms.contact.gaps import SAME, ContactState, Terms, covered, mean
 from corota.analysis.terms.term import NO_NODES, NONE, Term, TermOutput
 from corota.errors import ModelError, UnsupportedError
 from corota.lazy import lazy

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota._core import CLOSED, OPEN, SLIPPING
 from corota.analysis.failure import ElementFailure, GiveUp
 from corota.analysis.linear.coupling import Coupling
 from corota.analysis.linear.saddle_point import SaddlePointSystem
@@ -27,12 +28,9 @@ from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms, newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm, few
 from corota.analysis.terms.contact.gaps import (
-    CLOSED,
     COMPLIANCE,
-    OPEN,
     PATIENCE,
     SAME,
-    SLIPPING,
     SMALL,
     WAITED,
     RightHandSides,

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota._core import CLOSED, SLIPPING
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -17,8 +19,6 @@ if TYPE_CHECKING:
     States = list[NDArray[np.int8]]
 
 
-#: States of a constraint, as the laws of the core number them.
-OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Rounding bound: relative difference of lengths, areas, parts of a way and forces that is
 #: rounding.
 SAME = 1e-9

@@ -35,12 +35,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 import corota._core as _core
+from corota._core import CLOSED, OPEN
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.gaps import (
     AT_ONCE,
-    CLOSED,
     COMPLIANCE,
-    OPEN,
     PATIENCE,
     SMALL,
     WAITED,

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import CLOSED, OPEN, SAME, WAITED, covered, mean
+from corota._core import CLOSED, OPEN
+from corota.analysis.terms.contact.gaps import SAME, WAITED, covered, mean
 from corota.analysis.terms.contact.setup import (
     CORNER,
     FLAT,

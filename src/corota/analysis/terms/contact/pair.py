@@ -16,18 +16,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 import corota._core as _core
+from corota._core import CLOSED, OPEN, SLIPPING
 from corota.analysis.linear.triplets import Triplets
-from corota.analysis.terms.contact.gaps import (
-    CLOSED,
-    OPEN,
-    SAME,
-    SLIPPING,
-    SMALL,
-    WAITED,
-    Terms,
-    covered,
-    mean,
-)
+from corota.analysis.terms.contact.gaps import SAME, SMALL, WAITED, Terms, covered, mean
 from corota.analysis.terms.contact.setup import (
     STRAIGHT,
     alone,
@@ -892,4 +883,4 @@ def _width(pieces: Floats) -> float:
     return float(size.min()) if closed and twice > SAME * size.max() ** 2 else math.inf
 
 
-__all__ = ["CLOSED", "OPEN", "SLIPPING", "Pair", "Terms"]
+__all__ = ["Pair", "Terms"]

@@ -20,19 +20,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota._core import CLOSED, OPEN, SLIPPING
 from corota.analysis.path_system import NOT_CONSERVATIVE, Metric, Point, SmoothPath, Tangent
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import ContactEquations
-from corota.analysis.terms.contact.gaps import (
-    CLOSED,
-    OPEN,
-    PATIENCE,
-    SAME,
-    SLIPPING,
-    WAITED,
-    RightHandSides,
-    covered,
-)
+from corota.analysis.terms.contact.gaps import PATIENCE, SAME, WAITED, RightHandSides, covered
 from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import corota._core as _core
+from corota._core import CLOSED, OPEN, SLIPPING
 from corota.analysis.terms.contact.gaps import SAME, RightHandSides, covered, sticking
-from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
