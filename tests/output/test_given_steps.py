@@ -38,6 +38,22 @@ def test_files_do_not_depend_on_where_the_steps_come_from(tmp_path, suffix, nlge
     assert texts[0] == texts[1]
 
 
+def test_summary_and_picture_take_the_steps_of_a_call():
+    """They knew those of the model only: no supports and loads of a step given to `solve`."""
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, nx=4, ny=1))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+    step = ct.Static()
+    step.fix("left", x=0.0, y=0.0)
+    step.force("right", y=1.0)
+    bare = len(model.plot().axes[0].lines)
+    given = model.summary(step), model.summary([step]), model.plot(steps=step)
+    assert not model.steps
+    model.steps = [step]
+    assert given[0] == given[1] == model.summary()
+    marks = len(given[2].axes[0].lines)
+    assert marks == len(model.plot().axes[0].lines) > bare
+
+
 def test_solve_leaves_the_steps_of_the_model_alone():
     model = ct.Model(ct.mesh.rectangle(4.0, 1.0, nx=4, ny=1))
     model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))

@@ -137,6 +137,28 @@ def test_temperature_of_the_model_softens() -> None:
     np.testing.assert_allclose(found, 350.0 * (1.0 - (593.0 / 1480.0) ** 1.7), rtol=1e-9)
 
 
+@pytest.mark.parametrize("loaded_before", [True, False])
+def test_creep_of_a_bar_under_a_dead_load_ends_at_its_time(loaded_before: bool) -> None:
+    """Hoff (1953): a force that stays thins the bar without end at the time 1 / (n A s^n).
+
+    This was called a plastic collapse, or an increment turned the bar round and the step went on.
+    The true stress of the elastic bar is 1e-4 larger at the start: 249.87 for 250.
+    """
+    exponent, factor = 4.0, 1e-3
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1))
+    law = ct.Mises(E=1e4, nu=0.3, rate=ct.Norton(factor, exponent))
+    model.section("all", element="Q4I", material=law)
+    model.fix("left", y=None)
+    model.fix("bottom", x=None)
+    model.force("right", x=1.0)
+    steps = [ct.Static()] * loaded_before + [ct.Visco(period=400.0)]
+    with pytest.raises(ct.ConvergenceError, match="creep accelerates without end") as error:
+        ct.solve(model, steps, threads=1)
+    assert "plastic" not in str(error.value)
+    end = error.value.results.frames[-1].step_time
+    assert end == pytest.approx(249.87, rel=0.01)
+
+
 def test_a_ring_section_creeps_under_an_axial_stress() -> None:
     """Free to contract: ``s / E + A s^n t`` along the axis, in one increment."""
     model = ct.Model(ct.mesh.rectangle(1.0, 1.0, 2, 2, "quad4", origin=(1.0, 0.0)))

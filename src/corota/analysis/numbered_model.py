@@ -75,6 +75,7 @@ class NumberedModel:
         check_shapes(model, self.blocks)
         #: Whether any material depends on the time that passes.
         self.depends_on_time = any(b.section.material.depends_on_time for b in self.blocks)
+        self.creeps = any(b.section.material.creeps for b in self.blocks)
         #: Whether the model is a solid of revolution; then nodes and their zero dof.
         self.axisymmetric = axisymmetry.is_axisymmetric(model)
         self.guided = axisymmetry.guided(model) if self.axisymmetric else []

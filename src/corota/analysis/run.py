@@ -7,6 +7,7 @@ import os
 import time as clock
 import warnings
 from copy import copy
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal
 
@@ -45,6 +46,7 @@ from corota.results.results import Frame, Results
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from corota.analysis.evaluation import Evaluation
     from corota.arrays import Floats
     from corota.model.model import Model
     from corota.results.observer import Observer
@@ -423,23 +425,41 @@ class Analysis:
                 self._save(number, state, 0, 0.0, {})
 
     def _keep_iterate(self, state: State) -> None:
-        system, failed = self.system, state.failed
+        failed = state.failed
         if failed is None or failed.at is None or not np.isfinite(failed.u).all():
             return
-        last = self.results.frames[-1] if self.results.frames else self.resumed
-        if last is None:
+        begun = self.resumed
+        if self.results.frames:
+            last = self.results.frames[-1]
+        elif begun is not None and state.at is not None:
+            # A resumed run that stops at once: the state of its checkpoint.
+            where = begun.step, begun.increment, begun.time, begun.step_time, begun.factor
+            last = self._frame(where, state.u, state.at, state.reaction)
+        else:
             return
-        moved = system.by_node(failed.u)
-        self.results.last_iterate = Frame(
-            last.step,
-            last.increment + 1,
-            last.time,
-            last.step_time,
-            last.factor,
+        where = last.step, last.increment + 1, last.time, last.step_time, last.factor
+        iterate = self._frame(where, failed.u, failed.at, None)
+        self.results.last_state, self.results.last_iterate = last, iterate
+
+    def _frame(
+        self,
+        where: tuple[int, int, float, float, float],
+        u: Floats,
+        at: Evaluation,
+        reaction: Floats | None,
+    ) -> Frame:
+        """Displacements and forces of a state, without fields."""
+        system = self.system
+        moved = system.by_node(u)
+        if reaction is None:
+            reaction = system.reaction(at)
+        return Frame(
+            *where,
             moved[:, :2].copy(),
             moved[:, 2].copy(),
-            system.by_node(system.reaction(failed.at)),
-            system.by_node(failed.at.external),
+            system.by_node(reaction),
+            system.by_node(at.external),
+            constraint_force=system.by_node(at.residual - reaction),
         )
 
     def _localized(self, fields: list[PointFields]) -> tuple[int, str] | None:
@@ -461,7 +481,6 @@ class Analysis:
     ) -> None:
         system = self.system
         assert state.at is not None
-        by_node = system.by_node(state.u)
         fields: list[PointFields] = []
         elements: dict[str, float] | None = None
         if self.fields:
@@ -497,8 +516,6 @@ class Analysis:
         for out in outputs:
             scalars = {**scalars, **out.scalars}
         scalars |= system.conditions.wetted()
-        reaction = system.reaction(state.at) if state.reaction is None else state.reaction
-        held = system.by_node(state.at.residual - reaction)
         if self.model.contacts and kind == "static":
             pressure = 0.0 if contact is None else float(np.max(contact[:, 0], initial=0.0))
             forces = pair_forces(self.model.contacts, scalars, pressure)
@@ -506,23 +523,15 @@ class Analysis:
                 followed(peak, (number, state.step_time, force))
                 for peak, force in zip(state.peaks, forces, strict=True)
             )
-        frame = Frame(
-            number,
-            increment,
-            state.time + state.step_time,
-            state.step_time,
-            factor,
-            by_node[:, :2].copy(),
-            by_node[:, 2].copy(),
-            system.by_node(reaction),
-            system.by_node(state.at.external),
-            fields,
-            scalars,
-            None if state.v is None else system.by_node(state.v),
-            None if state.a is None else system.by_node(state.a),
-            contact,
-            held,
-            pairs,
+        where = number, increment, state.time + state.step_time, state.step_time, factor
+        frame = replace(
+            self._frame(where, state.u, state.at, state.reaction),
+            fields=fields,
+            scalars=scalars,
+            V=None if state.v is None else system.by_node(state.v),
+            A=None if state.a is None else system.by_node(state.a),
+            C=contact,
+            pairs=pairs,
             T=system.free.now.copy() if system.free.responds else None,
             H=state.harmonic,
         )

@@ -74,12 +74,12 @@ def write_modes(results: Results, path: Path) -> None:
 
 
 def write_iterate(results: Results, path: Path) -> None:
-    """Write the last frame of a run, if it has one, and the last iterate, as time steps."""
+    """Write the last state of a run that stopped and the last iterate, as time steps."""
     from corota.io.vtk.vtkhdf import VtkhdfWriter
 
-    assert results.last_iterate is not None
     writer = VtkhdfWriter(path, results.model)
-    # A resumed run that stops at once has no state of its own before it.
-    for frame in (*results.frames[-1:], results.last_iterate):
-        writer.add(replace(frame, scalars={}, fields=[], V=None, A=None, C=None))
+    for frame in (results.last_state, results.last_iterate):
+        assert frame is not None
+        bare = replace(frame, scalars={}, fields=[], V=None, A=None, C=None, pairs={}, T=None)
+        writer.add(bare)
     writer.close({})

@@ -102,6 +102,7 @@ class MaterialTable(Material):
             "oriented",
             "for_lines",
             "depends_on_time",
+            "creeps",
         ):
             setattr(self, name, getattr(first, name))
         if not self.rho:

@@ -144,6 +144,8 @@ class Material(Brief):
     follows_temperature = False
     #: Whether its answer depends on the time that passes.
     depends_on_time = False
+    #: Whether it creeps without end under constant stress.
+    creeps = False
     #: How many of its first parameters make the elastic or complementary energy; 0 for a law whose
     #: constants are unknown.
     elastic_constants = 0

@@ -555,8 +555,13 @@ class Model(Loading, LineSections, InitialFields, Stages):
         """
         return Findings(check_model(self, steps))
 
-    def summary(self) -> str:
+    def summary(self, steps: Step | Sequence[Step] | None = None) -> str:
         """Nodes, elements, sets, sections, supports, loads and steps as text.
+
+        Parameters
+        ----------
+        steps : Step or sequence of Step, optional
+            What will be run, as :func:`corota.solve` takes it; the model's own steps by default.
 
         Examples
         --------
@@ -565,7 +570,7 @@ class Model(Loading, LineSections, InitialFields, Stages):
         >>> print(model.summary().splitlines()[0])
         strip: 22 nodes, 10 elements
         """
-        return "\n".join(model_lines(self))
+        return "\n".join(model_lines(self, steps))
 
     def __repr__(self) -> str:
         mesh = self.mesh

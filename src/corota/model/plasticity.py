@@ -107,6 +107,7 @@ class Mises(LawOfTheCore):
         self._check_isotropic(self.E, self.nu)
         self._check_motion()
         self.depends_on_time = self.rate is not None
+        self.creeps = isinstance(self.rate, Norton)
         self.law = "viscoplastic" if self.depends_on_time else "mises"
         given = (self.yield_curve is not None) + (self.yield_stress is not None)
         if given > 1 or (given == 0 and not isinstance(self.rate, Norton)):

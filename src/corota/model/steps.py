@@ -176,6 +176,8 @@ class Step(Brief, Loading, Settings):
     where: Location | None = field(default=None, compare=False, repr=False)
 
     procedure: ClassVar[str] = ""
+    #: Whether creep and relaxation take part.
+    lasting: ClassVar[bool] = False
     run: ClassVar[Callable[..., None]]
     excludes: ClassVar[dict[str, tuple[str, Any]]] = {"first_increment": ("increments", 0)}
     #: Whether the procedure computes velocities and forces of the initial state.
@@ -404,8 +406,6 @@ class Static(Step):
 
     procedure = "static"
     run = staticmethod(lazy("corota.analysis.procedures.static:static_step"))
-    #: Whether creep and relaxation take part.
-    lasting: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         number(self.plastic_increment, "plastic_increment", self.where, least=0.0)

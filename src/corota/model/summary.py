@@ -12,18 +12,21 @@ from corota.model.constraints import Coupling
 from corota.model.contact import RigidCurve
 from corota.model.friction import described
 from corota.model.material_table import MaterialTable
+from corota.model.steps import listed_steps
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from corota.model.loads import Fixed
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.sections import Section
+    from corota.model.steps import Step
 
 
-def model_lines(model: Model) -> list[str]:
-    """Counts, extent, sets, sections and steps of a model."""
+def model_lines(model: Model, steps: Step | Sequence[Step] | None = None) -> list[str]:
+    """Counts, extent, sets, sections and steps of a model, its own by default."""
+    steps = model.steps if steps is None else listed_steps(steps)
     mesh = model.mesh
     lines = [f"{model.name}: {mesh.n_nodes:,} nodes, {mesh.n_cells:,} elements"]
     kinds: dict[str, int] = {}
@@ -52,7 +55,7 @@ def model_lines(model: Model) -> list[str]:
             f"thickness {_thickness(section)}"
         )
     lines += material_lines(model) + joint_lines(model) + support_lines(model, model.supports)
-    for number, step in enumerate(model.steps, 1):
+    for number, step in enumerate(steps, 1):
         geometry = "nonlinear" if step.nlgeom else "linear"
         lines.append(
             f"step {number}: {step.procedure}, geometrically {geometry}, period {step.period:g}, "
@@ -60,7 +63,7 @@ def model_lines(model: Model) -> list[str]:
             f"{len(step.loads) + len(model.loads)} loads"
         )
         lines += support_lines(model, step.supports)
-    if not model.steps and (model.supports or model.loads):
+    if not steps and (model.supports or model.loads):
         lines.append(f"{len(model.supports)} supports, {len(model.loads)} loads, no step yet")
     return lines
 

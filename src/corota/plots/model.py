@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from collections.abc import Sequence
+from copy import copy
 from os import PathLike
 from typing import Any
 
@@ -12,6 +14,7 @@ from corota.arrays import Floats, Ints
 from corota.mesh import EDGES, Mesh
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, applied
 from corota.model.model import Model
+from corota.model.steps import Step, listed_steps
 from corota.plots.figure import COLORS, INK, body_figure, finish, look, plane_axes
 from corota.plots.lines import draw_lines
 from corota.plots.rigid import draw_rigid, with_rigid
@@ -34,6 +37,7 @@ LOAD, SUPPORT, MOVED = "#D55E00", "#0b6e4f", "#7b3fa0"
 def model(
     subject: Model | Mesh,
     *,
+    steps: Step | Sequence[Step] | None = None,
     sets: bool = True,
     edges: bool | None = None,
     title: str | None = None,
@@ -51,6 +55,9 @@ def model(
     Parameters
     ----------
     subject : Model or Mesh
+    steps : Step or sequence of Step, optional
+        Whose supports and loads are drawn, as :func:`corota.solve` takes them; by default the
+        model's own.
     sets : bool
         Mark node and edge sets, up to eight.
     edges : bool, optional
@@ -65,6 +72,9 @@ def model(
     """
     if isinstance(subject, Mesh):
         subject = Model(subject, "mesh")
+    if steps is not None:
+        subject = copy(subject)
+        subject.steps = listed_steps(steps)
     mesh = subject.mesh
     low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
     size = float(np.linalg.norm(high - low)) or 1.0

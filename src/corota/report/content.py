@@ -206,8 +206,8 @@ def _more_of_memory(results: Results) -> list[tuple[str, Results]]:
     found: list[tuple[str, Results]] = []
     if results.modes:
         found.append(("mode", as_results(results)))
-    if results.last_iterate is not None and results.frames:
-        found.append(("iterate", Plain(results.model, [results.frames[-1], results.last_iterate])))
+    if results.last_state is not None and results.last_iterate is not None:
+        found.append(("iterate", Plain(results.model, [results.last_state, results.last_iterate])))
     return found
 
 

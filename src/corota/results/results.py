@@ -62,6 +62,8 @@ class Results(Brief):
         Those of each buckling step.
     keep : {"all", "last"}
         ``"last"`` holds one frame only, for large models whose frames go to disk.
+    last_state : Frame or None
+        The converged state before `last_iterate`, which a resumed run may have begun with.
     last_iterate : Frame or None
         Last iterate, if the analysis did not converge: not in equilibrium, for
         inspection. Its ``RF`` holds the residual.
@@ -76,6 +78,7 @@ class Results(Brief):
     keep: Literal["all", "last"] = "all"
     critical_points: list[CriticalPoint] = field(default_factory=list)
     modes: list[Modes] = field(default_factory=list)
+    last_state: Frame | None = None
     last_iterate: Frame | None = None
     steps: list[Step] = field(default_factory=list)
 

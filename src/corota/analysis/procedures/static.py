@@ -25,7 +25,6 @@ from corota.analysis.procedures.carried_bodies import carried_bodies
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
 from corota.model.material_table import MaterialTable
-from corota.model.rates import Norton
 
 if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
@@ -60,6 +59,8 @@ UNCHANGED = 1e-9
 CREEP_ERROR = 0.003
 #: Share of the increment that would have the allowed error of creep, and limits of its change.
 CREEP_SAFETY, LEAST_SHARE, MOST_GROWTH = 0.9, 1e-3, 4.0
+#: Growth of the rate of displacements over the slowest one that is creep without end.
+RUNAWAY = 10.0
 #: Error over the allowed one that is none, and one that gives a note.
 LEAST_EXCESS, MUCH_EXCESS = 1e-12, 10.0
 #: Note of the iterations of such an attempt.
@@ -104,7 +105,7 @@ class StaticStepper(NewtonStepper):
         super().__init__(loop, step, stops)
         self.step = step
         self.settings = Settings(step.tolerance, step.max_iterations)
-        #: Displacement per time, of the first increment and the last.
+        #: Displacement per time, of the first increment (of creep: the slowest) and the last.
         self.rates = (0.0, 0.0)
         #: Displacement over the last increment, if any material remembers it.
         self.moved: np.ndarray[tuple[int], np.dtype[np.float64]] | None = None
@@ -133,6 +134,7 @@ class StaticStepper(NewtonStepper):
             _soft(block.section.material) for block in blocks
         )
         self.elastic = 0.0
+        self.creeps = step.lasting and loop.system.creeps
         if self.measures and not self.state.resumes:
             self.measure_creep()
 
@@ -283,6 +285,13 @@ class StaticStepper(NewtonStepper):
         if outcome.negative > 0 >= self.state.negative and step.at_bifurcation != "warn":
             self.passed = (self.control.time, target)
             outcome.reason = passed(self.loop.number, self.passed, outcome.negative)
+        elif self.creeps:
+            # Where creep accelerates without end, a long increment may find an equilibrium behind
+            # the end: that of a bar which has turned round.
+            moved = float(np.abs(outcome.u - self.state.u).max(initial=0.0))
+            slowest = self.rates[0] * (target - self.control.time)
+            if moved > system.length and 0.0 < RUNAWAY * slowest < moved:
+                outcome.reason = "the creep of the increment has no bound"
 
     def equilibrium(
         self,
@@ -415,7 +424,8 @@ class StaticStepper(NewtonStepper):
         dt = attempt.target - control.time
         moved = outcome.u - state.u
         rate = float(np.abs(moved).max(initial=0.0)) / dt
-        self.rates = self.rates[0] or rate, rate
+        slowest = min(self.rates[0] or rate, rate) if self.creeps else self.rates[0] or rate
+        self.rates = slowest, rate
         self.moved = moved if self.remembers else None
         state.energies.add_quasi_static(outcome.u, state.u, outcome.at)
         if state.at is not None:
@@ -559,7 +569,7 @@ class StaticStepper(NewtonStepper):
                 factor = kept[-1]
                 said = str(error).removesuffix(". All converged increments are kept")
                 moves, way = driven(system, step, state), system.gives_way()
-                fails = "" if moves else collapse(system, number, factor, stepper.rates, said)
+                fails = "" if moves else collapse(system, step, number, factor, stepper.rates, said)
                 raise ConvergenceError(
                     f"{fails + '. ' if fails else ''}step {number} stopped at step time "
                     f"{factor * step.period:g} of {step.period:g} (load factor {factor:.6g}): "
@@ -576,8 +586,7 @@ class StaticStepper(NewtonStepper):
 def _soft(material: Material) -> float:
     """Inverse of Young's modulus of a material that creeps; 0 for others."""
     first = material.first if isinstance(material, MaterialTable) else material
-    creeps = isinstance(getattr(first, "rate", None), Norton)
-    return float(first.compliance()[0, 0]) if creeps else 0.0
+    return float(first.compliance()[0, 0]) if material.creeps else 0.0
 
 
 def _continued(report: Report | None, before: int, how: str) -> Report | None:

@@ -68,20 +68,29 @@ def remedies(moves: bool, follow: bool = False) -> str:
 
 
 def collapse(
-    system: System, number: int, factor: float, rates: tuple[float, float], why: str
+    system: System, step: Step, number: int, factor: float, rates: tuple[float, float], why: str
 ) -> str:
-    """Message on plastic collapse under loads; empty if there is none.
+    """Message on plastic collapse under loads, or on creep without end; empty if there is none.
 
     Parameters
     ----------
     rates : tuple of float
-        Displacement per unit of time in the first and in the last increment of the step.
+        Displacement per unit of time in the first increment of the step (where materials creep:
+        the smallest one) and in the last.
     why : str
         Why the last attempt failed: where all yields at once, by a mechanism.
     """
     if any(term.fades for term in system.terms):
         return ""  # a body moves away at the end of its damping: not a collapse
     grown = rates[1] / rates[0] if rates[0] > 0.0 else 0.0
+    if step.lasting and system.creeps:
+        if grown <= SOFT:
+            return ""
+        return (
+            f"creep accelerates without end: at step time {factor * step.period:.6g} of step "
+            f"{number} displacements grow {grown:.3g} times as fast as at their slowest; the "
+            "structure does not bear its load for longer"
+        )
     if not _yields(system) or not (grown > SOFT or (grown > 0.0 and FREE in why)):
         return ""
     # At a load that stays the same it is infinite.
@@ -126,7 +135,8 @@ def unstable(state: State) -> str:
 
 
 def _yields(system: System) -> bool:
-    return any(isinstance(b.section.material, Mises) for b in system.blocks)
+    laws = [b.section.material for b in system.blocks]
+    return any(isinstance(m, Mises) and (m.yield_curve or m.yield_stress) for m in laws)
 
 
 def explanation(
@@ -143,7 +153,7 @@ def explanation(
     Parameters
     ----------
     rates : tuple of float
-        Displacement per unit of time in the first and in the last increment of the step.
+        As of :func:`collapse`.
     """
     period = control.step.period
     moves = driven(system, control.step, state)
@@ -154,14 +164,18 @@ def explanation(
         f"(load factor {control.time / period:.6g}): {end}; last attempt: {outcome.reason}"
     )
     collapses = (
-        "" if moves else collapse(system, number, control.time / period, rates, outcome.reason)
+        ""
+        if moves
+        else collapse(system, control.step, number, control.time / period, rates, outcome.reason)
     )
     if collapses:
         where = f"{collapses}: {end}; last attempt: {outcome.reason}"
     if outcome.at is not None:
         norms = system.residual_norms(outcome.at, outcome.u)
         where += f"; largest residual at {system.describe(norms.worst)}"
-    if state.negative > 0:
+    if collapses and control.step.lasting and system.creeps:
+        where += ". The load must be smaller, or the period shorter"
+    elif state.negative > 0:
         where += unstable(state) + instead
     elif outcome.negative > 0:
         where += (
