@@ -12,6 +12,11 @@ __version__: str
 OPEN: int
 CLOSED: int
 SLIPPING: int
+#: Turns of a boundary [rad]: at a corner, beside which it is round; of a round that is coarse; of a
+#: rigid round over a slave edge from which nodes alone do not represent it.
+CORNER: float
+TURN: float
+STEEP: float
 
 _Floats = NDArray[np.float64]
 _Indices = NDArray[np.uint32]

@@ -3,6 +3,7 @@
 
 use crate::base::pool;
 use crate::contact::active_set::Gradients;
+use crate::contact::corners;
 use crate::contact::discrete_gradient::discrete_gradient;
 use crate::contact::discretization::{self, DISCRETIZATIONS, Entry};
 use crate::contact::slave::Depth;
@@ -594,5 +595,8 @@ fn matrix<T: numpy::Element, const N: usize>(
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(contact_methods, m)?)?;
+    m.add("CORNER", corners::LEAST_TURN)?;
+    m.add("TURN", corners::LEAST_TURN_AT_CORNERS)?;
+    m.add("STEEP", corners::STEEP)?;
     m.add_class::<Contact>()
 }

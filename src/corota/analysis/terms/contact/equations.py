@@ -28,7 +28,6 @@ from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms, newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm, few
 from corota.analysis.terms.contact.gaps import (
-    COMPLIANCE,
     PATIENCE,
     SAME,
     SMALL,
@@ -70,8 +69,6 @@ pressures = lazy("corota.analysis.terms.contact.output:pressures")
 #: beyond which it counts as a jump to another equilibrium. Under forces it passes a limit point
 #: unseen from twice of it on.
 JUMP = 4.0
-#: Merit of a correction: fraction of the friction bound from which it is repeated with slip.
-FRICTION_EXCESS = 2.0
 
 
 class ContactEquations:
@@ -426,7 +423,7 @@ class ContactEquations:
         right_sides: RightHandSides,
         found: Solution,
     ) -> tuple[Solution, States]:
-        """Let constraints slip at once that a correction would load far beyond friction.
+        """Let constraints slip at once that a correction alone would load beyond friction.
 
         Otherwise a large displacement of supports distorts the mesh before anything slips. What
         supports move over the surface slips in any case: no traction can hold it.
@@ -458,7 +455,7 @@ class ContactEquations:
                 self.border.dropped.difference_update(slips.tolist())
                 over = moved
                 if early:
-                    over = over | (s == CLOSED) & (np.abs(q1) > FRICTION_EXCESS * bound)
+                    over = over | (s == CLOSED) & (np.abs(q1 - q) > bound)
                 s[over] = SLIPPING
                 slip_direction = self.slip_directions[k]
                 slip_direction = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction)
@@ -786,6 +783,6 @@ def linearized_contact(
         # Slips of a pair with a pressure law have no compliance either.
         hard[pair.first + pair.n : pair.first + pair.width] = True
     bare = hard & (coupling.diagonal <= 0.0)
-    coupling.diagonal[bare] = -COMPLIANCE * own[bare]
+    coupling.diagonal[bare] = -SAME * own[bare]
     term.revert()
     return at, coupling, residuals, states, term.law_multipliers()

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 
 #: Rounding bound: relative difference of lengths, areas, parts of a way and forces that is
-#: rounding.
+#: rounding; compliance of closed constraints relative to that of their nodes, with which those that
+#: follow from others leave a matrix regular, and share the force.
 SAME = 1e-9
 #: Rest of Newton's method over its whole, as of a length over an edge: depth up to which a node
 #: touches (as where a node of the other side carries both), that a fixed surface may be pressed
@@ -28,11 +29,8 @@ SAME = 1e-9
 #: count; residual from which only digits are missing: states that do
 #: not change any more are those of the end, and a position on the way is reached.
 SMALL = 1e-6
-#: Regularization of redundant constraints: compliance of closed ones relative to that of their
-#: nodes: constraints that follow from others then leave a matrix regular, and share the force.
-COMPLIANCE = 1e-10
-#: Entries of a table that is filled at once, and of a matrix that is kept dense (memory and cost
-#: alone).
+#: Entries of a table that is filled at once, and of a matrix that is kept dense, with a row and a
+#: column for each constraint of a complementarity problem (memory and cost alone).
 AT_ONCE = 100_000
 #: Bisections of an interval down to its rounding.
 HALVINGS = 44

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota._core import CLOSED, OPEN
+from corota._core import CLOSED, CORNER, OPEN, STEEP, TURN
 from corota.analysis.terms.contact.gaps import SAME, WAITED, covered, mean
 from corota.analysis.terms.contact.setup import (
-    CORNER,
     FLAT,
     alone,
     blunt_turns,
@@ -198,13 +197,10 @@ def resultant(
 
 # -- messages --------------------------------------------------------------------------
 
-#: Notes alone: depth of a penetration [edges], or height of facets over an overlap, from which it
-#: is reported; half of it where a pair does not press at all.
+#: Notes alone: depth of a penetration [edges], height of facets over an overlap, or part of a
+#: force, of a friction bound and of an area, from which it counts; half of the depth where a pair
+#: does not press at all.
 NAMED = 0.05
-
-#: Message alone: part that counts as the whole: of the force of a pair that a node carries alone,
-#: of a friction bound that is used up, of an area.
-WHOLE = 0.99
 
 
 def explanation(problem: ContactEquations, at: Evaluation | None) -> str:
@@ -265,7 +261,7 @@ def _overcome(problem: ContactEquations, at: Evaluation) -> str:
         if pair.rubs and bound > 0.0:
             used[pair.name] = abs(float((q * terms.area).sum())) / bound
     name = max(used, key=lambda name: used[name], default="")
-    if name and (WHOLE * used[name] > 1.0 or min(used.values()) > WHOLE):
+    if name and (used[name] > 1.0 + NAMED or min(used.values()) > 1.0 - NAMED):
         return (
             f"friction of contact pair {name!r} does not hold the bodies from the start: they slide"
         )
@@ -286,7 +282,7 @@ def gives_way(contact_term: ContactTerm) -> str:
         if pair.tied or not total > 0.0:
             continue
         bound = float((pair.bound(np.maximum(p, 0.0)) * terms.area).sum())
-        if pair.rubs and float(np.abs(q * terms.area).sum()) > WHOLE * bound:
+        if pair.rubs and float(np.abs(q * terms.area).sum()) > (1.0 - NAMED) * bound:
             return (
                 f"friction of contact pair {pair.name!r} is used up: a body that it alone holds "
                 "slides"
@@ -300,17 +296,12 @@ def gives_way(contact_term: ContactTerm) -> str:
         mesh = contact_term.system.model.mesh
         edges = mesh.edge_nodes(mesh.boundary_edges())
         ends = np.array([nodes[:2] for nodes in edges], np.int64)
-        if at_node[node] > WHOLE * total and node in sharp_corners(mesh.points, ends):
+        if at_node[node] > (1.0 - NAMED) * total and node in sharp_corners(mesh.points, ends):
             return (
                 f"contact pair {pair.name!r} presses at corner {mesh.node_labels[node]} alone: "
                 "a body that it alone holds tips about it"
             )
     return ""
-
-
-#: Notes alone: slave edges that a round corner should measure along its radius, and its least turn
-#: [rad].
-EDGES, TURN = 2.0, math.radians(20.0)
 
 
 def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
@@ -368,14 +359,14 @@ def fillet_note(pair: Pair) -> str:
     radius = float(np.hypot(*(corners[:, :2] - corners[:, 4:6]).T).min())
     # The mean by length: short edges at a nose do not represent the sliding face.
     edge = float((pair.slave.length**2).sum() / pair.slave.length.sum())
-    if radius >= EDGES * edge:
+    if edge <= STEEP * radius:
         return ""
     return (
         f"contact pair {pair.item.name!r}: the smallest round corner of the rigid curve has the "
         f"radius {radius:.4g}, {radius / edge:.2g} slave edges (mean {edge:.4g}); the force "
         "will be jagged while nodes pass it one by one. Use method='node_to_segment' (TYPE=NODE "
         "TO SURFACE), which measures such rounds against edges; or use slave edges of at most "
-        f"{radius / EDGES:.3g} where they meet it, or a larger radius"
+        f"{STEEP * radius:.3g} where they meet it, or a larger radius"
     )
 
 
@@ -464,7 +455,7 @@ def partly_covered_note(pair: Pair, area: Floats, x: Floats, labels: Ints) -> st
         excess += (taken - float(part[np.argmin(off)])) * length * depth
         named.append(str(labels[a]))
     exact = float(area[: pair.of_nodes][seen[: pair.of_nodes]].sum()) - excess
-    if abs(excess) <= (1.0 - WHOLE) * exact:
+    if abs(excess) <= NAMED * exact:
         return ""
     return (
         f"contact pair {pair.name!r}: the master ends within slave edges (node "
@@ -502,12 +493,12 @@ def sunk_corner(contact_term: ContactTerm) -> str:
                 continue
             away, best, over = signed_distances(x[edges], x[[corner]], SAME * pair.size)
             a, b = edges[best[0]]
-            depth = -float(away[0] * over[0]) / math.dist(x[a], x[b])
-            if worst < depth < EDGES:
+            depth, edge = -float(away[0] * over[0]), math.dist(x[a], x[b])
+            if worst * edge < depth < pair.depth:
                 label = contact_term.system.model.mesh.node_labels
-                worst = depth
+                worst = depth / edge
                 said = (
-                    f"; the sharp corner of the master at node {label[corner]} lies {depth:.2g} "
+                    f"; the sharp corner of the master at node {label[corner]} lies {worst:.2g} "
                     f"slave edges inside the slave surface of {pair.name!r}, between nodes "
                     f"{label[a]} and {label[b]}: a pressure law acts on areas, so "
                     "that it goes in until they wedge. Exchange slave and master, refine the "

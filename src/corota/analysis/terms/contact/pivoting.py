@@ -14,13 +14,14 @@ generalized equations*, MRC report 1965 (1979).
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 import corota._core as _core
 from corota._core import CLOSED, OPEN, SLIPPING
-from corota.analysis.terms.contact.gaps import SAME, RightHandSides, covered, sticking
+from corota.analysis.terms.contact.gaps import AT_ONCE, SAME, RightHandSides, covered, sticking
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -34,10 +35,6 @@ if TYPE_CHECKING:
     States = list[NDArray[np.int8]]
     #: Correction of dofs and multipliers, its states, signs of slipping tractions.
     Found = tuple[Floats, States, list[Floats]]
-
-#: Size of the linear complementarity problem: most constraints (its cost grows with the cube); a
-#: tenth of them may be open ones from the start.
-MOST = 500
 
 
 class Pivoting:
@@ -56,6 +53,8 @@ class Pivoting:
     ) -> None:
         self.problem, self.at, self.right_sides = problem, at, right_sides
         self.pairs = list(problem.pairs(at.contact_state))
+        #: Constraints of one problem (its cost grows with the cube); a tenth may be open at first.
+        self.most = math.isqrt(AT_ONCE)
 
     def solve(self, bases: list[States]) -> Found | None:
         """Correction of dofs and multipliers, its states and senses; None where none is found.
@@ -96,14 +95,14 @@ class Pivoting:
         for k, (pair, terms, _) in enumerate(self.pairs):
             able = self._able(k)
             gap = np.where(able & (base[k] == OPEN), terms.gap * pair.stiffness, np.inf)
-            near = np.argsort(gap, kind="stable")[: MOST // 10]
+            near = np.argsort(gap, kind="stable")[: self.most // 10]
             mask = able & (base[k] != OPEN)
             mask[near[np.isfinite(gap[near])]] = True
             wanted.append(mask)
         return self._listed(wanted)
 
     def _listed(self, wanted: list[Bools]) -> list[Ints]:
-        left, out = MOST, []
+        left, out = self.most, []
         for mask in wanted:
             out.append(np.flatnonzero(mask)[:left])
             left -= len(out[-1])
@@ -128,7 +127,7 @@ class Pivoting:
             bad[chosen[k]] = True
             wanted.append(bad)
         count = sum(int(w.sum()) for w in wanted)
-        more = sum(map(len, chosen)) < count <= MOST
+        more = sum(map(len, chosen)) < count <= self.most
         return self._listed(wanted) if more else None
 
     # -- the linearized problem -------------------------------------------------------

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import corota._core as _core
+from corota._core import CORNER
 from corota.analysis.terms.contact.gaps import AT_ONCE, SAME
 from corota.arrays import distinct
 from corota.errors import ModelError
@@ -255,8 +256,6 @@ def line_core(
 
 # -- masters without kinks -----------------------------------------------------------------
 
-#: Turns of the boundary at a node that are smoothed: larger ones are corners.
-CORNER = math.radians(50.0)
 #: Turn of a straight boundary whose coordinates have few digits [rad].
 FLAT = 5e-3
 
