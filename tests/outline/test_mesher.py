@@ -153,6 +153,33 @@ def test_a_refused_drawing_gets_a_picture(tmp_path):
     assert (tmp_path / "a.refused.png").exists()
 
 
+def test_nodes_lie_on_ellipses_and_on_arcs_of_rational_splines(tmp_path):
+    """Cubic curves in place of them were off by 2.7e-4 of an ellipse, and by 3.7e-4 of an arc."""
+    drawing = ezdxf.new()
+    space = drawing.modelspace()
+    space.add_ellipse((0.0, 0.0), major_axis=(20.0, 0.0), ratio=0.5, dxfattribs={"layer": "rim"})
+    block = drawing.blocks.new("BORE")
+    block.add_circle((0.0, 0.0), 1.0, dxfattribs={"layer": "bore"})
+    scale = {"xscale": 3.0, "yscale": 2.0}
+    space.add_blockref("BORE", (-8.0, 0.0), dxfattribs=scale)
+    arc = space.add_spline(degree=2, dxfattribs={"layer": "eye"})
+    # A semicircle of radius 4 of two quarters, each with the weight cos 45 in its corner.
+    corners = [(12, 0), (12, 4), (8, 4), (4, 4), (4, 0)]
+    arc.control_points = [(*at, 0.0) for at in corners]
+    arc.knots = [0, 0, 0, 1, 1, 2, 2, 2]
+    arc.weights = [1.0, 0.5**0.5, 1.0, 0.5**0.5, 1.0]
+    space.add_line((4.0, 0.0), (12.0, 0.0), dxfattribs={"layer": "flat"})
+    drawing.saveas(tmp_path / "a.dxf")
+    mesh = ct.mesh.outline(tmp_path / "a.dxf", size=1.0, triangles=True, quadratic=True)
+    for name, center, axes in (
+        ("rim", (0.0, 0.0), (20.0, 10.0)),
+        ("bore", (-8.0, 0.0), (3.0, 2.0)),
+        ("eye", (8.0, 0.0), (4.0, 4.0)),
+    ):
+        at = mesh.points[mesh.nodes_of(name)]
+        np.testing.assert_allclose(np.hypot(*((at - center) / axes).T), 1.0, rtol=0.0, atol=1e-6)
+
+
 def test_a_hatch_names_its_part_and_a_text_comes_first(tmp_path):
     drawing = ezdxf.new()
     space = drawing.modelspace()

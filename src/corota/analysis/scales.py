@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.conditions import Conditions
     from corota.analysis.terms.term import Term
-    from corota.arrays import Floats
+    from corota.arrays import Floats, Ints
 
 
 #: Forces below this multiple of the rounding errors of the coordinates count as zero.
@@ -67,6 +67,8 @@ class Scales:
         #: Largest force and moment of the last checked state, and of the committed one.
         self._sizes = self._committed = [0.0, 0.0]
         self._begun: Floats | None = None
+        #: Rotations, of reference nodes, that only the displacements of other nodes resist.
+        self._levered: Ints = np.zeros(0, dtype=np.int64)
         self._bodies = any(not elements.find(b.section.element).line for b in system.blocks)
 
     def begin(self, tolerance: float, u: Floats) -> None:
@@ -75,7 +77,13 @@ class Scales:
 
     def measure(self, values: Floats) -> None:
         """Take the stiffness from a tangent of the elements, before anything is added to it."""
-        diagonal = np.abs(self._diagonal(values))[~self.system.is_rotation]
+        diagonal = np.abs(self._diagonal(values))
+        system = self.system
+        held = system.link.gather_sizes(np.where(system.is_rotation, diagonal, 0.0))
+        loose = np.zeros(len(held), dtype=bool)
+        loose[system.constraints.free] = True
+        self._levered = np.flatnonzero(loose & system.is_rotation & (held == 0.0))
+        diagonal = diagonal[~system.is_rotation]
         self.stiffest = float(diagonal.max(initial=0.0))
         some = diagonal[diagonal > 0.0]
         self.ratio = self.stiffest / float(some.min()) if len(some) else 1.0
@@ -193,15 +201,22 @@ class Scales:
 
             norms.measure = measure
 
-    def implausible_displacement(self, u: Floats) -> str:
+    def implausible_displacement(self, u: Floats, before: Floats | None = None) -> str:
         """Why a static displacement is implausible; empty if it is not.
 
+        Parameters
+        ----------
+        before : ndarray, shape (n_dofs,), optional
+            Displacement that the increment starts from.
+
+        Notes
+        -----
         A constrained body moves at most by its supports and its own deformation. Elements take
         rotations of their nodes up to whole turns: a node that an iterate turned once more is in
         equilibrium as well.
         """
         system = self.system
-        if system.nlgeom and (twisted := self._twisted(u)):
+        if system.nlgeom and (twisted := self._twisted(u) or self._turned(u, before)):
             return twisted
         if not self._bodies or not (system.nlgeom or any(term.joins for term in self.terms)):
             return ""
@@ -218,6 +233,25 @@ class Scales:
         return (
             f"node {node} moves by {moved[worst]:.3g}, {moved[worst] / system.length:.2g} times "
             "the size of the model: its body is unconstrained; add a support"
+        )
+
+    def _turned(self, u: Floats, before: Floats | None) -> str:
+        """Which rigid body turns by more than half a turn in an increment, against springs alone.
+
+        Its forces are the same after each whole turn: such an increment may end at any of them.
+        Contact knows the way that its surfaces slide.
+        """
+        free = self._levered[~self.conditions.constrained[self._levered]]
+        if before is None or not len(free) or any(term.joins for term in self.terms):
+            return ""
+        turned = np.abs(u[free] - before[free])
+        worst = int(turned.argmax())
+        if turned[worst] <= np.pi:
+            return ""
+        node = self.system.model.mesh.node_labels[self.system.node_of_dof[free[worst]]]
+        return (
+            f"the body of reference node {node} turns by {turned[worst]:.3g}, more than half a "
+            "turn in an increment: take smaller ones"
         )
 
     def _twisted(self, u: Floats) -> str:

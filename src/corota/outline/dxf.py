@@ -140,8 +140,9 @@ def _curves_of(entity: Any, kind: str, name: str, source: str) -> list[Curve] | 
     if kind in ("SPLINE", "ELLIPSE"):
         from ezdxf import path as paths
 
-        whole = paths.make_path(entity)
-        return spline([_xy(p) for p in whole.flattening(_tolerance(whole))], name, source)
+        # Points of the entity itself: its path has cubic curves in place of arcs, off by 2.7e-4.
+        near = _tolerance(paths.make_path(entity))
+        return spline([_xy(p) for p in entity.flattening(near)], name, source)
     return None
 
 

@@ -355,7 +355,7 @@ class StaticStepper(NewtonStepper):
                 raise
             outcome = Outcome(False, state.u, None, reason=f"the tangent is singular: {error}")
         if outcome.converged:
-            outcome.reason = system.scales.implausible_displacement(outcome.u)
+            outcome.reason = system.scales.implausible_displacement(outcome.u, begin)
         elif not outcome.reason:
             outcome.reason = "no convergence"
         return outcome, contact
