@@ -29,13 +29,12 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.saddle_point import SaddlePointSystem
     from corota.analysis.numbered_model import NumberedModel, Role
-    from corota.analysis.terms.contact.gaps import Kink
+    from corota.analysis.terms.contact.gaps import Kink, States
     from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.term import StatePoint
     from corota.arrays import Floats, Ints
     from corota.model.steps import Step
 
-    States = list[NDArray[np.int8]]
     #: A pair, its gaps and slips, and its tractions p and q.
     Each = tuple[Pair, Terms, tuple[Floats, Floats]]
 
@@ -198,7 +197,7 @@ class ContactTerm(Term):
         notes: list[str] = passed_through(self.system.model, self.system.by_node(u))
         return notes + (sunk_between(self) if finished else [])
 
-    def keeps(self, at: Evaluation, states: list[NDArray[np.int8]], tolerance: float) -> bool:
+    def keeps(self, at: Evaluation, states: States, tolerance: float) -> bool:
         """Whether `states` have pressures, gaps and friction of an equilibrium; none slips."""
         contact = at.contact_state
         most = tolerance * max(float(np.abs(contact.multipliers).max(initial=0.0)), 1e-300)

@@ -42,17 +42,14 @@ from corota.lazy import lazy
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import Settings
     from corota.analysis.terms.contact.contact import Each
-    from corota.analysis.terms.contact.gaps import ContactState, Kink, Terms
+    from corota.analysis.terms.contact.gaps import ContactState, Kink, States, Terms
     from corota.analysis.terms.contact.pair import Pair
     from corota.arrays import Bools, Floats, Ints
 
-    States = list[NDArray[np.int8]]
     #: Corrections of dofs and multipliers, and negative pivots; -1 if not symmetric.
     Solution = tuple[Floats, Floats, int]
     Linearized = tuple[Coupling, Floats, int, list[tuple[Floats, Floats]]]
@@ -532,14 +529,11 @@ class ContactEquations:
                 continue
             self.last, self.loose = tried, str(error)
             return found
-        open_pairs = [
-            pair.name
-            for pair, s in zip(self.term.pairs, states, strict=True)
-            if not (s != OPEN).any()
-        ]
-        if open_pairs:
+        each = zip(self.term.pairs, states, strict=True)
+        open_pair = next((pair.name for pair, s in each if (s == OPEN).all()), None)
+        if open_pair is not None:
             raise SingularError(
-                f"{error}; contact pair {open_pairs[0]!r} is open: support the body until it is "
+                f"{error}; contact pair {open_pair!r} is open: support the body until it is "
                 "in contact, start in contact (start='adjust'), or damp it (stabilize=True, "
                 "*CONTACT CONTROLS, STABILIZE)",
                 error.equation,

@@ -36,21 +36,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.numbered_model import NumberedModel
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
-    Bools = NDArray[np.bool_]
-    Constraints = tuple[
-        Floats,
-        Floats,
-        Floats,
-        Floats,
-        Floats,
-        Floats,
-        Floats | None,
-        Bools | None,
-        Floats | None,
-    ]
+    from corota.arrays import Bools, Floats, Ints
 
 #: Proximal term of dependent constraints: change of the pressure of a corner beside a closed node
 #: per error of its gap, relative to its stiffness. That of the first correction; a tenth in each
@@ -224,10 +210,7 @@ class Pair:
         Where nothing has moved yet, those of the increment before stay.
         """
         if self.rubs and dt > 0.0 and terms.slip.any():
-            seen = covered(terms.area, self.full)
-            self.rate = np.where(seen, np.abs(terms.slip), 0.0) / np.where(
-                seen, terms.area * dt, 1.0
-            )
+            self.rate = np.abs(mean(terms.slip, terms.area * dt, self.full * dt))
 
     # -- evaluation --------------------------------------------------------------------
 
@@ -413,8 +396,7 @@ class Pair:
     def begun(self) -> tuple[Floats, Floats]:
         """Weighted gaps and areas that the increment began with."""
         assert self.start is not None
-        gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
-        return gap, area
+        return self._owned(self.start[0]), self._owned(self.start[1])
 
     def gap_of_start(self, terms: Terms) -> Floats:
         """Weighted gaps that the increment began with, shape (n,).
@@ -442,25 +424,16 @@ class Pair:
     def _shared(self, raw: _core._Gaps) -> Terms:
         """Terms in which weak parts belong to their owners."""
         gap, slip, area = raw["total_gap"], raw["total_slip"], raw["total_area"]
-        parts = (gap, area)
-        constraint = raw["constraint"]
+        parts, constraint = (gap, area), raw["constraint"]
         if (self.owner != np.arange(self.n)).any():
-            gap, slip, area = (
-                np.asarray(np.bincount(self.owner, t, self.n), np.float64)
-                for t in (gap, slip, area)
-            )
+            gap, slip, area = (self._owned(t) for t in (gap, slip, area))
             constraint = self.owner[constraint]
-        return Terms(
-            gap,
-            slip,
-            area,
-            constraint,
-            raw["pair"],
-            raw["variables"],
-            raw["gap_gradient"],
-            raw["slip_gradient"],
-            parts,
-        )
+        rest = raw["pair"], raw["variables"], raw["gap_gradient"], raw["slip_gradient"]
+        return Terms(gap, slip, area, constraint, *rest, parts)
+
+    def _owned(self, parts: Floats) -> Floats:
+        """Sums of the parts of nodes by the constraints that own them."""
+        return np.bincount(self.owner, parts, self.n).astype(float)
 
     def _owners(self, area: Floats) -> Ints:
         """Constraint that each node's part belongs to: its own, or a neighbor's.
@@ -489,10 +462,8 @@ class Pair:
         at = self.fixed
 
         def rise(gradient: Floats, since: Floats) -> Floats:
-            moved = (x - since).ravel()[at.variables]
-            out = np.zeros(self.n)
-            np.add.at(out, at.constraint, (gradient * moved).sum(axis=1))
-            return out
+            moved = (gradient * (x - since).ravel()[at.variables]).sum(axis=1)
+            return np.bincount(at.constraint, moved, self.n).astype(float)
 
         gap = at.gap + rise(at.gap_gradient, self.reference)
         slip = rise(at.slip_gradient, self.reference if self.tied else old)
@@ -515,7 +486,7 @@ class Pair:
 
     # -- states ------------------------------------------------------------------------
 
-    def _at(self, terms: Terms, q: Floats | None = None) -> Constraints:
+    def _at(self, terms: Terms, q: Floats | None = None) -> _core._Constraints:
         """The constraints as arrays, as the law takes them.
 
         A slip changes a shear traction `q` by the stiffness of the node. Where this is nothing
@@ -536,9 +507,8 @@ class Pair:
         """Constraints that do not open: those of surfaces that do not separate and had met."""
         if self.separates or self.tied:
             return None
-        found: Bools = self.closed.copy()
-        found[self.of_surfaces :] = False  # a corner leaves what it slides off
-        return found
+        # A corner leaves what it slides off.
+        return self.closed & (np.arange(self.n) < self.of_surfaces)
 
     def trial(self, terms: Terms, p: Floats) -> tuple[Floats, Floats]:
         """Gap [length] and trial pressure of each constraint; not covered: infinitely open."""
@@ -572,11 +542,7 @@ class Pair:
 
     def slip_direction(self, terms: Terms, q: Floats) -> Floats:
         """Sign of the shear traction if it slips, shape (n,)."""
-        return np.where(self.shear(terms, q) > 0.0, 1.0, -1.0)
-
-    def shear(self, terms: Terms, q: Floats) -> Floats:
-        """Trial shear traction, shape (n,)."""
-        return self.conditions.shear(self._at(terms, q), q)
+        return np.where(self.conditions.shear(self._at(terms, q), q) > 0.0, 1.0, -1.0)
 
     def violation(self, terms: Terms, p: Floats, q: Floats) -> Floats:
         """Contact residual as a force by constraint, shape (n,)."""
@@ -675,8 +641,6 @@ class Pair:
     def backed(self, terms: Terms, state: NDArray[np.int8]) -> Ints:
         """Closed constraints of corners beside which a slave node is closed as well."""
         own = terms.constraint >= self.of_surfaces
-        if not own.any():
-            return np.zeros(0, np.int64)
         corner, nodes = terms.constraint[own], terms.variables[own][:, :6:2] // 3
         beside = self.place[nodes]
         closed = (beside >= 0) & (state[self.owner[beside]] != OPEN)
@@ -860,11 +824,9 @@ class Pair:
 
 def _columns(where: Ints, column: Ints, gradient: Floats, rows: NDArray[np.bool_]) -> Triplets:
     """Gradients of some terms as columns."""
-    where, gradient = where[rows], gradient[rows]
+    flat, values = where[rows].ravel(), gradient[rows].ravel()
     columns = np.repeat(column[rows], where.shape[1])
-    flat, values = where.ravel(), gradient.ravel()
-    keep = (flat >= 0) & (values != 0.0)
-    return Triplets(flat[keep], columns[keep], values[keep])
+    return Triplets(flat, columns, values).keep((flat >= 0) & (values != 0.0))
 
 
 def _turn(old: Floats, new: Floats) -> float:

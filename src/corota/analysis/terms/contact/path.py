@@ -28,13 +28,11 @@ from corota.analysis.terms.contact.gaps import PATIENCE, SAME, WAITED, RightHand
 from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
+    from corota.analysis.terms.contact.gaps import States
     from corota.arrays import Bools, Floats
 
-    States = list[NDArray[np.int8]]
     Event = tuple[float, int, int, int]
 
 
@@ -94,9 +92,7 @@ class ContactPathEquations(ContactEquations):
         self.term.revert()
         self.forget()
         self._fresh, self.holds = False, loose
-        first = (
-            self._base if not (like and like.contact_state.settled) else like.contact_state.settled
-        )
+        first = (like and like.contact_state.settled) or self._base
         if first is not None:
             self.last = [s.copy() for s in first]
 
@@ -325,10 +321,7 @@ class EventPath:
         """The next change along the direction; of several at once, that of the latest first."""
         best: Event | None = None
         path, term = self.path, self.path.term
-        tractions, rates = (
-            term.parts(self.z[path.n :]),
-            term.parts(self.tangent.u[path.n :]),
-        )
+        tractions, rates = (term.parts(z[path.n :]) for z in (self.z, self.tangent.u))
         moves = path.gap_rates(self.at, self.tangent.u[: path.n])
         for k, pair in enumerate(term.pairs):
             if pair.tied or pair.law is not None or not pair.n:
@@ -345,9 +338,8 @@ class EventPath:
                     margin = _reach(mu * p - sign * q, sign * dq - mu * dp, sticks)
                     found.append((margin, SLIPPING))
                 slip_direction = np.sign(q)
-                for (which, i), other in self.slip_directions.items():
-                    if which == k:
-                        slip_direction[i] = other
+                for (_, i), other in (d for d in self.slip_directions.items() if d[0][0] == k):
+                    slip_direction[i] = other
                 found.append((_reach(0.0 * q, dslip * slip_direction, state == SLIPPING), CLOSED))
             for ways, new in found:
                 i = int(np.argmin(ways))

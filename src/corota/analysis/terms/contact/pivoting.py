@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.types import Kind
     from corota.analysis.terms.contact.equations import ContactEquations
+    from corota.analysis.terms.contact.gaps import States
     from corota.arrays import Bools, Floats, Ints
 
-    States = list[NDArray[np.int8]]
     #: Correction of dofs and multipliers, its states, signs of slipping tractions.
     Found = tuple[Floats, States, list[Floats]]
 
@@ -111,12 +111,13 @@ class Pivoting:
     def _violated(self, z: Floats, states: States, chosen: list[Ints]) -> list[Ints] | None:
         """The choice with the constraints that a solution would violate; None if there are none."""
         problem, n = self.problem, self.problem.n
-        wanted = []
+        wanted, scales = [], problem.system.scales
+        none = SAME * max(scales.force, scales.zero_force)
         moves = problem.gap_rates(self.at, z[:n])
         for k, (pair, terms, (p, q)) in enumerate(self.pairs):
             p1 = p + z[n + pair.first : n + pair.first + pair.n]
             gap = terms.gap + moves[k][0]
-            small = SAME * max(float(np.abs(p1 * terms.area).max(initial=0.0)), _small(problem))
+            small = SAME * max(float(np.abs(p1 * terms.area).max(initial=0.0)), none)
             bad = (states[k] == OPEN) & (gap * pair.stiffness < -small)
             bad |= (states[k] != OPEN) & (p1 * terms.area < -small)
             if pair.rubs:
@@ -267,9 +268,3 @@ def pivoted(problem: ContactEquations, at: Evaluation, right_sides: RightHandSid
     key = [b"".join(s.tobytes() for s in base) for base in bases]
     bases = [base for i, base in enumerate(bases) if key[i] not in key[:i]]
     return Pivoting(problem, at, right_sides).solve(bases)
-
-
-def _small(problem: ContactEquations) -> float:
-    """Force that counts as zero."""
-    scales = problem.system.scales
-    return SAME * max(scales.force, scales.zero_force)

@@ -436,21 +436,13 @@ def along_contour(found: Surface, points: Floats) -> Surface:
             contour.append(at)
             at = follower.get(int(found.nodes[at, 1]))
         if contour and at == first:
-            turn = _turns_of_contour(points, found.nodes[contour])
-            begin = int(np.argmin(turn))
+            turns = _turns(points, found.nodes[contour, :2].tolist())
+            # The tip of a slit turns by half a turn, of either sign by rounding.
+            turns |= {a: t - math.tau for a, t in turns.items() if t > math.pi - SAME}
+            begin = int(np.argmin([turns[a] for a in found.nodes[contour, 0].tolist()]))
             contour = contour[begin:] + contour[:begin]
         order += contour
     return found.take(np.array(order, np.int64))
-
-
-def _turns_of_contour(points: Floats, nodes: Ints) -> Floats:
-    """Angle to each edge of a closed contour from the one before it, negative inwards."""
-    along = points[nodes[:, 1]] - points[nodes[:, 0]]
-    before = np.roll(along, 1, axis=0)
-    cross = before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0]
-    turn = np.arctan2(cross, (before * along).sum(axis=1))
-    # The tip of a slit turns by half a turn, of either sign by rounding.
-    return np.asarray(np.where(turn > np.pi - SAME, turn - 2.0 * np.pi, turn))
 
 
 def make_core(system: NumberedModel, item: ContactPair | Tie) -> Core:
