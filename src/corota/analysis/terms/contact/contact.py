@@ -96,8 +96,6 @@ class ContactTerm(Term):
         #: Displacement that slips are measured from within an increment, if not the committed one:
         #: where a damped motion has brought the bodies to rest.
         self.slip_start: Floats | None = None
-        #: The displacement that slips are measured from, and the positions there.
-        self._begun: tuple[Floats, Floats] | None = None
         self.at: ContactState | None = None
         #: Message alone: which friction forces exceeded in an attempt from load zero, or ''.
         self.overcome = ""
@@ -403,13 +401,6 @@ class ContactTerm(Term):
         x[:, :2] += self.system.model.mesh.points
         return x
 
-    def _before(self) -> Floats:
-        """Positions that slips are measured from; kept, not to be changed."""
-        u = self.u if self.slip_start is None else self.slip_start
-        if self._begun is None or self._begun[0] is not u:
-            self._begun = u, self.positions(u)
-        return self._begun[1]
-
     def parts(self, multipliers: Floats) -> list[tuple[Floats, Floats]]:
         """Tractions p and q of each pair."""
         out = []
@@ -463,10 +454,10 @@ class ContactTerm(Term):
         values : ndarray, shape (nnz,)
             Tangent of the elements, for the stiffness of the nodes.
         """
-        system = self.system
+        system, since = self.system, self.slip_start
         if not self._stiff:
             self._measure(values)
-        x, old = self.positions(u), self._before()
+        x, old = (self.positions(v) for v in (u, self.u if since is None else since))
         force, size = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
         found, changed = [], self._changed(step_time)
         for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
@@ -509,8 +500,7 @@ class ContactTerm(Term):
         """
         if self.at is None:
             return np.zeros(self.system.n_dofs)
-        acts, widths = zip(*((pair.active, pair.width) for pair in self.pairs), strict=True)
-        acting = np.repeat(acts, widths)
+        acting = np.repeat([p.active for p in self.pairs], [p.width for p in self.pairs])
         force = self.forces(self.at.acting, self.committed * acting, shears=False)[0]
         if len(self.fading):
             force = force + self._left(self.time) * self.fading
@@ -581,9 +571,8 @@ class ContactTerm(Term):
 
     def accept(self, u: Floats, contact_state: ContactState, step_time: float) -> None:
         """Accept a state."""
-        states = [np.zeros(pair.n, np.int8) for pair in self.pairs]
-        if self.at is not None:
-            states = self.at.states
+        none = [np.full(pair.n, OPEN, np.int8) for pair in self.pairs]
+        states = none if self.at is None else self.at.states
         each = self.each(contact_state.terms, contact_state.multipliers)
         for (pair, terms, (p, q)), begun, state in zip(
             each, self.parts(self.committed), states, strict=True

@@ -80,9 +80,8 @@ def output(
             continue
         acting, x = at.acting[k], at.where
         assert x is not None
-        force = resultant(pair, acting, p, q, x)
-        for name, value in zip(("force x", "force y", "moment"), force, strict=True):
-            sums[f"{pair.name}: {name}"] = value
+        keys = (f"{pair.name}: {name}" for name in ("force x", "force y", "moment"))
+        sums |= zip(keys, resultant(pair, acting, p, q, x), strict=True)
         if not pair.tied:
             closed = np.zeros(n)
             area = np.where(state != OPEN, terms.area, 0.0)
@@ -93,9 +92,8 @@ def output(
             sums[f"{pair.name}: gap"] = float(gap.min(initial=pair.reach))
             sums[f"{pair.name}: area"] = float(closed.sum() + area.sum())
         if pair.rubs:
-            shear = resultant(pair, acting, np.zeros_like(p), q, x)
-            for name, value in zip(("x", "y", "moment"), shear, strict=True):
-                sums[f"{pair.name}: friction {name}"] = value
+            keys = (f"{pair.name}: friction {name}" for name in ("x", "y", "moment"))
+            sums |= zip(keys, resultant(pair, acting, np.zeros_like(p), q, x), strict=True)
         friction += pair.friction_work
         law += pair.law_energy(terms)
     sums["friction energy"] = friction
@@ -137,8 +135,7 @@ def _spread(values: Floats, pair: Pair, rows: Floats, terms: Terms | None = None
     # Facets in contact with rounded corners are shown at their first nodes.
     facets = pair.nodes[pair.of_nodes : pair.of_surfaces]
     more = rows[pair.of_nodes : pair.of_surfaces]
-    for column in (0, 1, 3):
-        own[facets, column] += more[:, column]
+    own[facets[:, None], [0, 1, 3]] += more[:, [0, 1, 3]]
     own[facets, 2] = np.minimum(own[facets, 2], more[:, 2])
     own[facets, 4] = np.maximum(own[facets, 4], more[:, 4])
     if terms is not None and len(pair.corners):
