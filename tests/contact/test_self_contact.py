@@ -79,3 +79,24 @@ def test_a_closed_slit_that_sticks_carries_shear_as_if_it_were_not_there(method:
     force = results.frames[-1].RF[results.model.mesh.nodes_of("top")].sum(axis=0)
     expected = exact.RF[whole.mesh.nodes_of("top")].sum(axis=0)
     np.testing.assert_allclose(force[:2], expected[:2], rtol=1e-4)
+
+
+@pytest.mark.parametrize("nlgeom", [True, False])
+@pytest.mark.parametrize("element", ["Q4I", "T3", "Q4D"])
+def test_edges_on_both_sides_of_a_node_are_no_vertex(element: str, nlgeom: bool) -> None:
+    """The outline of a block in contact with itself has no force, however the block is loaded.
+
+    The node halfway up its side is as far from the ends of an edge above as of one below, and
+    was held by one of them as if they met there.
+    """
+    mesh = ct.mesh.rectangle(2.0, 1.0, 2, 2, "tri3" if element == "T3" else "quad4")
+    names = ("bottom", "right", "top", "left")
+    mesh.edge_sets["outline"] = np.concatenate([mesh.edge_sets[name] for name in names])
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=YOUNG, nu=0.3))
+    model.contact("outline", "outline", method="node_to_segment")
+    model.fix("left")
+    step = ct.Static(nlgeom=nlgeom)
+    step.fix("right", x=-0.05, y=None)
+    frame = ct.solve(model, step, threads=1).frames[-1]
+    assert not frame.C[:, 0].any()

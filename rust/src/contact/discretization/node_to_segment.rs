@@ -64,6 +64,7 @@ pub fn choose(
         beyond: f64,
         distance: f64,
         size: f64,
+        end: Vec2<f64>,
     }
     let found: Vec<Found> = shapes
         .iter()
@@ -78,6 +79,7 @@ pub fn choose(
                 beyond,
                 distance: hit.gap.hypot(beyond.max(0.0) * size),
                 size,
+                end: shape.end(usize::from(hit.r > 0.0)),
             })
         })
         .collect();
@@ -92,8 +94,10 @@ pub fn choose(
     if best.beyond <= 0.0 {
         return Some(best.pair);
     }
+    // Edges as far away that do not meet there, as on both sides of a hole, are no vertex.
     let near = |f: &&Found| {
-        f.beyond > 0.0 && f.distance - best.distance <= 1e-6 * (best.distance + best.size)
+        let (close, apart) = (1e-6 * (best.distance + best.size), sub(f.end, best.end));
+        f.beyond > 0.0 && f.distance - best.distance <= close && apart[0].hypot(apart[1]) <= close
     };
     let mut vertex: Vec<&Found> = found.iter().filter(near).collect();
     if vertex.len() < 2 {
