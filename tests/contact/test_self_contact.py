@@ -100,3 +100,62 @@ def test_edges_on_both_sides_of_a_node_are_no_vertex(element: str, nlgeom: bool)
     step.fix("right", x=-0.05, y=None)
     frame = ct.solve(model, step, threads=1).frames[-1]
     assert not frame.C[:, 0].any()
+
+
+CELLS = {"T3": "tri3", "T6": "tri6", "Q8R": "quad8"}
+
+
+@pytest.mark.filterwarnings("ignore:local strain reaches")
+@pytest.mark.parametrize("nlgeom", [True, False])
+@pytest.mark.parametrize("sideways", [0.0, 0.3, -0.3])
+@pytest.mark.parametrize("cells", [(1, 1), (2, 2), (3, 3), (4, 2), (6, 3), (5, 10)])
+@pytest.mark.parametrize("element", ["T3", "Q4I", "Q4D", "T6", "Q8R"])
+def test_nodes_beside_a_corner_are_not_in_its_other_face(
+    element: str, cells: tuple[int, int], sideways: float, nlgeom: bool
+) -> None:
+    """The outline of a block has no force, pressed or pressed and sheared.
+
+    A node of the top lies behind the left side, less deep than half of the block's height. The
+    block pressed with 476 for 0 there, or its run stopped.
+    """
+    mesh = ct.mesh.rectangle(2.0, 1.0, *cells, CELLS.get(element, "quad4"))  # type: ignore[arg-type]
+    names = ("bottom", "right", "top", "left")
+    mesh.edge_sets["outline"] = np.concatenate([mesh.edge_sets[name] for name in names])
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=YOUNG, nu=0.3))
+    model.contact("outline", "outline", method="node_to_segment")
+    model.fix("left")
+    step = ct.Static(nlgeom=nlgeom)
+    step.fix("right", x=-0.05, y=sideways or None)
+    frame = ct.solve(model, step, threads=1).frames[-1]
+    assert not frame.C[:, 0].any()
+
+
+def legs(element: str, nlgeom: bool, outlines: bool) -> float:
+    """Force between two cantilevers pressed together, by their facing sides or their outlines."""
+    length, apart, force = 20.0, 0.1, 3e-3
+    cell = CELLS.get(element, "quad4")
+    lower = ct.mesh.rectangle(length, 1.0, 40, 2, cell)  # type: ignore[arg-type]
+    upper = ct.mesh.rectangle(length, 1.0, 43, 2, cell, origin=(0.0, 1.0 + apart))  # type: ignore[arg-type]
+    mesh = ct.mesh.assembly(a=lower, b=upper)
+    names = [f"{leg}.{side}" for leg in "ab" for side in ("bottom", "right", "top")]
+    mesh.edge_sets["sides"] = np.concatenate([mesh.edge_sets[name] for name in names])
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=1000.0, nu=0.0))
+    slave, master = ("sides", "sides") if outlines else ("b.bottom", "a.top")
+    model.contact(slave, master, method="node_to_segment")
+    model.fix("a.left")
+    model.fix("b.left")
+    step = ct.Static(nlgeom=nlgeom)
+    step.force("a.right", y=force)
+    step.force("b.right", y=-force)
+    frame = ct.solve(model, step, threads=1).frames[-1]
+    return force + float(frame.RF[mesh.node_sets["a.left"], 1].sum())
+
+
+@pytest.mark.parametrize("nlgeom", [True, False])
+@pytest.mark.parametrize("element", ["Q4I", "Q8R", "T6"])
+def test_outlines_of_two_legs_press_as_their_facing_sides_do(element: str, nlgeom: bool) -> None:
+    force = legs(element, nlgeom, outlines=False)
+    assert force > 1e-3
+    assert legs(element, nlgeom, outlines=True) == pytest.approx(force, rel=1e-6)

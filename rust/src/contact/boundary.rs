@@ -118,6 +118,15 @@ impl Boundary {
         way_round(near(way, 0.0, round), round, self.sense[part], turn)
     }
 
+    /// Length of the boundary between two members, infinite if they are of different parts.
+    pub fn between(&self, i: usize, j: usize) -> f64 {
+        if self.part[i] != self.part[j] {
+            return f64::INFINITY;
+        }
+        let way = |i, j| self.way(self.part[i], self.at(i, 1.0), self.at(j, -1.0), 0.0).abs();
+        way(i, j).min(way(j, i))
+    }
+
     pub fn round(&self, part: usize) -> f64 {
         self.round[part]
     }

@@ -492,12 +492,13 @@ impl Corners {
 }
 
 /// Whether a corner of a boundary that meets itself may meet an edge: one that it shares no node
-/// with, and that its node has no constraint against.
+/// with, that is not around a corner from it, and that its node has no constraint against.
 fn free(sides: &Sides, corner: Corner, i: usize, nodal: bool) -> bool {
     let own: Vec<usize> = corner.members().collect();
     let edges = &sides.slave.edges;
     let apart = |&j: &usize| !edges[j].nodes().iter().any(|n| edges[i].nodes().contains(n));
-    own.iter().all(apart) && !(nodal && sides.slave.apart(&own, i, &sides.notches))
+    let around = own.iter().any(|&j| sides.is_around_corner(j, i));
+    own.iter().all(apart) && !around && !(nodal && sides.apart(&own, i))
 }
 
 /// A corner, or the center of a fillet.

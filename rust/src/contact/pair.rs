@@ -179,15 +179,18 @@ impl Contact {
 
     /// Renews the candidates of the surfaces where needed; tells whether they changed.
     fn look(&mut self, x: &[[f64; 3]]) -> bool {
-        let Sides { slave, master, search, distances, itself, notches, .. } = &mut self.sides;
-        let items = self.method.items(slave, x);
+        let mut search = std::mem::take(&mut self.sides.search);
+        let sides = &self.sides;
+        let items = self.method.items(&sides.slave, x);
         let count = items.len();
-        let owners = itself.then(|| self.method.owners(slave));
+        let owners = sides.itself.then(|| self.method.owners(&sides.slave));
         let method = &self.method;
         let allowed = |i: usize, j: usize| {
-            method.allows(i, j) && owners.as_ref().is_none_or(|o| slave.apart(&o[i], j, notches))
+            method.allows(i, j) && owners.as_ref().is_none_or(|o| sides.apart(&o[i], j))
         };
-        let changed = search.update(items, master, x, distances.reach, distances.margin, allowed);
+        let Distances { reach, margin, .. } = sides.distances;
+        let changed = search.update(items, &sides.master, x, reach, margin, allowed);
+        self.sides.search = search;
         if changed {
             self.sides.index(count);
         }

@@ -14,7 +14,7 @@ pub type Item = (Box2, Vec2<f64>);
 pub type Candidate = (usize, usize);
 
 /// Most of the cosine between the outward normals of two chords that may meet.
-const TURNED: f64 = 0.7;
+pub(super) const TURNED: f64 = 0.7;
 
 /// Least cosine of a turn since the search that still cannot make an unturned pair face.
 const STEADY: f64 = 0.92;

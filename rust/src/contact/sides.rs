@@ -1,10 +1,11 @@
 //! Both sides of a pair, where its constraints begin, and which parts of them may meet.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::curve::Curve;
+use super::boundary::{Boundary, followers};
+use super::curve::{Curve, dot, outward, sub, unit};
 use super::master::Surface;
-use super::search::{self, Candidate, Search};
-use super::slave::Slave;
+use super::search::{self, Candidate, Search, TURNED};
+use super::slave::{OPPOSITE, Slave};
 use std::collections::HashSet;
 use std::ops::Range;
 
@@ -34,6 +35,9 @@ pub struct Sides {
     pub depth: Vec<f64>,
     /// Clearance taken off the gap of each constraint.
     pub offset: Vec<f64>,
+    /// Undeformed boundary that meets itself, and how far around a corner an edge of it meets none.
+    boundary: Option<Boundary>,
+    around: Vec<f64>,
     pub(super) search: Search,
     /// First candidate of each item.
     first: Vec<usize>,
@@ -49,7 +53,13 @@ impl Sides {
         distances: Distances,
     ) -> Self {
         let itself = master.is_none();
+        let boundary = itself.then(|| {
+            let edges = Surface::Edges(slave.edges.clone());
+            Boundary::new(&edges, x, &followers(&edges, x))
+        });
         Self {
+            boundary,
+            around: Vec::new(),
             notches: if itself { slave.notches(x) } else { HashSet::new() },
             master: master.unwrap_or_else(|| Surface::Edges(slave.edges.clone())),
             itself,
@@ -75,7 +85,35 @@ impl Sides {
         };
         let least =
             |own: &Vec<usize>| own.iter().map(|&i| of_edges[i]).fold(f64::INFINITY, f64::min);
+        // Where no other face is known nothing is met that is farther than the search.
+        let reach = self.distances.reach + self.distances.margin;
+        let whole = |h: &f64| if h.is_finite() { 2.0 * h } else { reach };
+        self.around = of_edges.iter().map(whole).collect();
         self.depth = owners.iter().map(|own| least(own).min(self.distances.depth)).collect();
+    }
+
+    /// Whether edge `j` of a boundary with itself comes before all of `mine`, so that each pair is
+    /// taken once, shares no node with them but the tip of a notch, and is not around a corner.
+    pub fn apart(&self, mine: &[usize], j: usize) -> bool {
+        let edges = &self.slave.edges;
+        let other = edges[j].nodes();
+        let joined = |n: &u32| other.contains(n) && !self.notches.contains(n);
+        mine.iter()
+            .all(|&i| j < i && !edges[i].nodes().iter().any(joined) && !self.is_around_corner(i, j))
+    }
+
+    /// Whether two edges of a boundary with itself lie on the sides of a convex corner, not farther
+    /// from each other than the body is thick: each is behind the other, and to meet it from outside
+    /// the boundary would have to bend back within that length.
+    pub fn is_around_corner(&self, i: usize, j: usize) -> bool {
+        let Some(boundary) = &self.boundary else { return false };
+        let [a, b] = [&self.reference[i], &self.reference[j]];
+        let (n, m, way) = (unit(outward(a.d)), unit(outward(b.d)), sub(b.at(0.0), a.at(0.0)));
+        dot(n, m) > OPPOSITE
+            && dot(n, m) < TURNED
+            && dot(way, n) < 0.0
+            && dot(way, m) > 0.0
+            && boundary.between(i, j) <= self.around[i].min(self.around[j])
     }
 
     pub fn candidates(&self) -> &[Candidate] {

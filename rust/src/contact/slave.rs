@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 /// Largest cosine between the normals of the faces of a notch that may meet: 60 degrees of opening.
-const OPPOSITE: f64 = -0.5;
+pub(super) const OPPOSITE: f64 = -0.5;
 /// Integral of weights over that of their sizes below which it is as good as none.
 const VANISHING: f64 = 0.1;
 /// Sine between two normals that is rounding.
@@ -101,14 +101,6 @@ impl Slave {
             }
         }
         owners
-    }
-
-    /// Whether edge `j` comes before all of `mine` and shares no node with them but the tip of a
-    /// notch, so that each pair of a boundary with itself is taken once.
-    pub fn apart(&self, mine: &[usize], j: usize, notches: &HashSet<u32>) -> bool {
-        let other = self.edges[j].nodes();
-        let joined = |n: &u32| other.contains(n) && !notches.contains(n);
-        mine.iter().all(|&i| j < i && !self.edges[i].nodes().iter().any(joined))
     }
 
     /// Nodes at the tips of notches whose faces are opposite, as those of a slit are.
