@@ -41,13 +41,13 @@ COMMAND = "python -m benchmarks contact_constants"
 FOLDER = "corota.analysis.terms.contact."
 #: Numbers of problems of :mod:`contact_problems`, and what is changed in them. All nine
 #: families; some choose states by pivoting, bring free bodies into contact, rest at kinks, pass
-#: through surfaces, jump, relax, and come to rest by a damped motion.
+#: through surfaces, jump and relax.
 SAMPLE: tuple[tuple[int, str], ...] = (
     *((number, "") for number in (378, 666, 864)),  # press
     *((number, "") for number in (1207, 100, 1405)),  # ring
     (1685, ""),  # belt
     *((number, "") for number in (741, 1533, 1956, 390)),  # wave
-    *((number, "") for number in (265, 895, 256)),  # clip
+    *((number, "") for number in (265, 895, 256, 274)),  # clip
     *((number, "") for number in (986, 923)),  # seal
     *((number, "") for number in (474, 1995, 411)),  # indent
     *((number, "") for number in (1528, 1204, 1258)),  # stack
@@ -58,9 +58,6 @@ SAMPLE: tuple[tuple[int, str], ...] = (
     (411, "path"),
     (864, "stabilized"),
 )
-#: A clip that comes to rest by a damped motion, which takes half of the time: for constants that
-#: fewer than `FEW` others read.
-DEAR, FEW = (1183, ""), 2
 SIZE, LIMIT = 0.5, 30
 FACTORS = (0.5, 2.0)
 
@@ -226,15 +223,13 @@ def main() -> int:
     before: dict[str, Row] = {}
     reads: dict[str, set[str]] = {}
     left = [name for name in args.only or names if name not in kept]
-    for number, change in (*SAMPLE, DEAR) if left else ():
+    for number, change in SAMPLE if left else ():
         key, constants.read = f"{number} {change}".strip(), set()
         before[key] = run(number, change)
         reads[key] = constants.read
     for name in left:
-        users = [job for job in (*SAMPLE, DEAR) if name in reads[f"{job[0]} {job[1]}".strip()]]
+        users = [job for job in SAMPLE if name in reads[f"{job[0]} {job[1]}".strip()]]
         row: Row = {"name": name, "used": len(users)}
-        if len(users) > FEW:
-            users = [job for job in users if job != DEAR]
         for factor in FACTORS:
             constants.scaled, constants.factor = name, factor
             after = {f"{n} {change}".strip(): run(n, change) for n, change in users}

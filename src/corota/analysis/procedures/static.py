@@ -360,7 +360,7 @@ class StaticStepper(NewtonStepper):
             outcome.reason = "no convergence"
         return outcome, contact
 
-    def relax(self, target: float, nearby: bool, motion: bool) -> tuple[Outcome, ContactEquations]:
+    def relax(self, target: float, nearby: bool) -> tuple[Outcome, ContactEquations]:
         """An increment to a step time from the committed state by relaxation; see `relax`."""
         system, u = self.system, self.state.u
         prescribed = system.conditions.supports.at(target, u)
@@ -372,7 +372,6 @@ class StaticStepper(NewtonStepper):
             self.settings,
             self.report,
             nearby=nearby,
-            motion=motion,
         )
         return found
 

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,31 +16,9 @@ if TYPE_CHECKING:
     from corota.analysis.procedures.static import StaticStepper
 
 
-class Rung(NamedTuple):
-    """A way to the next equilibrium where Newton's method finds none.
-
-    Parameters
-    ----------
-    motion : bool
-        Whether it starts where a damped motion brings the bodies to rest.
-    first : tuple of float
-        Increments to try, of the period: of the first one, in which bodies that contact alone
-        holds come into contact.
-    later : tuple of float
-        And where an equilibrium has ended.
-    """
-
-    motion: bool
-    first: tuple[float, ...]
-    later: tuple[float, ...]
-
-
-#: Tried in turn. Of 286 torture problems relaxation solves an increment in 26, the damped motion in
-#: 5 of the 8 in which relaxation alone fails.
-LADDER: tuple[Rung, ...] = (
-    Rung(False, (1e-2, 3e-2, 0.1, 0.2, 0.3), (1e-3, 1e-2)),
-    Rung(True, (1e-3, 1e-2), (1e-3, 1e-2)),
-)
+#: Increments to try in turn, of the period: of the first one, in which bodies that contact alone
+#: holds come into contact; and where an equilibrium has ended.
+FIRST, LATER = (1e-2, 3e-2, 0.1, 0.2, 0.3), (1e-3, 1e-2)
 #: Halvings of the interval in which a first contact closes.
 HALVINGS = 4
 
@@ -56,18 +34,15 @@ def by_relaxation(stepper: StaticStepper) -> Attempt | str:
     loaded = not stepper.may_relax()
     if loaded and not (first and system.joined):
         return ""
-    ladder = LADDER
+    sizes: tuple[float, ...] = FIRST if first else LATER
     if control.step.fixed_increments:
-        whole = (control.size / control.step.period,)
-        ladder = tuple(Rung(rung.motion, whole, whole) for rung in LADDER)
-    if loaded:
-        ladder = tuple(rung for rung in ladder if not rung.motion)
-    tries = _Sizes(ladder, first)
-    for fraction, motion in tries:
+        sizes = (control.size / control.step.period,)
+    tries = _Sizes(sizes, first)
+    for fraction in tries:
         size = fraction * control.step.period
         target = min([control.time + size, *(s for s in control.stops if s > control.time)])
         try:
-            outcome, contact = stepper.relax(target, loaded, motion)
+            outcome, contact = stepper.relax(target, loaded)
         except SingularError:
             continue
         # Unconstrained bodies that did not move are not in a first equilibrium.
@@ -92,8 +67,7 @@ def by_relaxation(stepper: StaticStepper) -> Attempt | str:
         return Attempt(target, outcome, contact)
     if loaded:
         return ""
-    tried = "neither relaxation nor a damped motion" if len(ladder) > 1 else "no relaxation"
-    said = f"; {tried} from the last converged state found an equilibrium nearby"
+    said = "; no relaxation from the last converged state found an equilibrium nearby"
     if system.wedges():
         return said  # the message has the reason
     return (
@@ -103,13 +77,14 @@ def by_relaxation(stepper: StaticStepper) -> Attempt | str:
 
 
 class _Sizes:
-    """Increments to try in turn, and whether a damped motion begins.
+    """Increments to try in turn.
 
     Between the largest first one that closes no contact and one without an equilibrium the first
     contact is found by bisection.
 
     Parameters
     ----------
+    sizes : tuple of float
     first : bool
         Whether it is the first increment.
 
@@ -119,22 +94,21 @@ class _Sizes:
         Set by the caller after a try: whether no contact has closed.
     """
 
-    def __init__(self, ladder: tuple[Rung, ...], first: bool) -> None:
-        self.ladder, self.first = ladder, first
+    def __init__(self, sizes: tuple[float, ...], first: bool) -> None:
+        self.sizes, self.first = sizes, first
         self.nothing_closed = False
 
-    def __iter__(self) -> Iterator[tuple[float, bool]]:
-        for rung in self.ladder:
-            low = 0.0
-            for high in rung.first if self.first else rung.later:
+    def __iter__(self) -> Iterator[float]:
+        low = 0.0
+        for high in self.sizes:
+            self.nothing_closed = False
+            yield high
+            if self.nothing_closed:
+                low = high
+                continue
+            for _ in range(HALVINGS if low and self.first else 0):
+                middle = 0.5 * (low + high)
                 self.nothing_closed = False
-                yield high, rung.motion
-                if self.nothing_closed and not rung.motion:
-                    low = high
-                    continue
-                for _ in range(HALVINGS if low and self.first else 0):
-                    middle = 0.5 * (low + high)
-                    self.nothing_closed = False
-                    yield middle, rung.motion
-                    low, high = (middle, high) if self.nothing_closed else (low, middle)
-                low = 0.0
+                yield middle
+                low, high = (middle, high) if self.nothing_closed else (low, middle)
+            low = 0.0

@@ -94,7 +94,7 @@ class ContactTerm(Term):
         self.committed = np.zeros(self.n)
         self.u = np.zeros(system.n_dofs)
         #: Displacement that slips are measured from within an increment, if not the committed one:
-        #: where a damped motion has brought the bodies to rest.
+        #: the last position of a relaxation.
         self.slip_start: Floats | None = None
         self.at: ContactState | None = None
         #: Message alone: which friction forces exceeded in an attempt from load zero, or ''.

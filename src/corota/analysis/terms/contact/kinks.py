@@ -37,11 +37,6 @@ if TYPE_CHECKING:
 JUMP = 0.2
 #: Search radius of a kink in the next iterations, in distances between its sides.
 WIDTH = 4.0
-#: Search radii before that one, in distances that the last correction was to go: nearer jumps come
-#: first.
-NEAR = (0.2, 3.0)
-#: Rounding bound: least search radius, over the rounding of gaps.
-ROUNDED = 1e3
 
 
 class Sides:
@@ -132,27 +127,21 @@ def near_side(term: ContactTerm, point: StatePoint, kink: Kink) -> ContactState 
     The kink takes the new normal, jump and distance.
     """
     u, sides = point.u, Sides(term, point.multipliers, point.time)
-    # In a width of rounding either side may come first.
-    least = ROUNDED * sides.noise
-    for width in (*(max(share * abs(kink.distance), least) for share in NEAR), kink.width):
-        if width > kink.width:
-            continue
 
-        def place(t: float, w: float = width) -> Floats:
-            return u + (2.0 * t - 1.0) * w * kink.move
+    def place(t: float) -> Floats:
+        return u + (2.0 * t - 1.0) * kink.width * kink.move
 
-        at = sides.jump(place)
-        new = None if at is None else _kink(sides, place, at)
-        if at is None or new is None or float(new.jump @ kink.jump) <= 0.0:
-            continue
-        kink.far = sides.state(place(at[1])).terms
-        state = sides.state(place(at[0]))
-        kink.distance = (2.0 * at[0] - 1.0) * width * float(new.normal @ kink.move)
-        kink.normal, kink.move, kink.jump = new.normal, new.move, new.jump
-        kink.follow(u)
-        state.force = state.force + kink.share * kink.jump
-        return state
-    return None
+    at = sides.jump(place)
+    new = None if at is None else _kink(sides, place, at)
+    if at is None or new is None or float(new.jump @ kink.jump) <= 0.0:
+        return None
+    kink.far = sides.state(place(at[1])).terms
+    state = sides.state(place(at[0]))
+    kink.distance = (2.0 * at[0] - 1.0) * kink.width * float(new.normal @ kink.move)
+    kink.normal, kink.move, kink.jump = new.normal, new.move, new.jump
+    kink.follow(u)
+    state.force = state.force + kink.share * kink.jump
+    return state
 
 
 def both_sides(kink: Kink, near: list[Terms]) -> list[Terms]:
