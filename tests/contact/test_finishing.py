@@ -169,19 +169,21 @@ def test_relaxation_passes_positions_at_which_gaps_jump(number, size):
         np.testing.assert_allclose(np.sum(forces, axis=0), 0.0, atol=1e-7 * size)
 
 
-def _pressed(monkeypatch, farthest=np.inf):
-    """A block that a floor compresses by a tenth, relaxed; what evaluations failed.
+def _pressed(monkeypatch, down=0.1, farthest=np.inf, moved=True):
+    """A block that a floor compresses, relaxed; what evaluations failed.
 
-    Elements fail where a node moves farther than a distance from the last position that was found.
+    Elements fail where a node moves farther than a distance from the last evaluation. The support
+    has moved before relaxation begins, or moves in it.
     """
     model = ct.Model(ct.mesh.rectangle(1.0, 1.0, 3, 3, "quad4"))
     model.section("all", element="Q4I", material=ct.Elastic(E=10.0, nu=0.3), plane="strain")
     model.contact("bottom", ct.RigidCurve.line((-1.0, 0.0), (2.0, 0.0)), friction=0.2)
-    model.fix("top", x=0.0, y=-0.1)
+    model.fix("top", x=0.0, y=-down)
     system = System(model, Multifrontal())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
     start = system.conditions.supports.at(1.0, np.zeros(system.n_dofs))
-    inner, last, failed = system.evaluate, [start], []
+    begin = start if moved else np.zeros_like(start)
+    inner, last, failed = system.evaluate, [begin], []
 
     def evaluate(z, step_time, rule=REST):
         u = z[: system.n_dofs]
@@ -191,9 +193,9 @@ def _pressed(monkeypatch, farthest=np.inf):
         last[0] = u.copy()
         return inner(z, step_time, rule)
 
-    inner(np.append(start, np.zeros(system.n_multipliers)), 0.0)  # measures stiffness
+    inner(np.append(begin, np.zeros(system.n_multipliers)), 0.0)  # measures stiffness
     monkeypatch.setattr(system, "evaluate", evaluate)
-    found, _ = relax(system, start, start, 1.0, Settings())
+    found, _ = relax(system, begin, start, 1.0, Settings())
     assert found.converged, found.reason
     return found.u, failed
 
@@ -203,6 +205,13 @@ def test_relaxation_in_which_an_element_fails_goes_on_with_stiffer_springs(monke
     assert not none
     found, failed = _pressed(monkeypatch, farthest=0.02)
     assert failed
+    np.testing.assert_allclose(found, expected, atol=1e-8)
+
+
+def test_relaxation_moves_supports_by_more_than_a_position_may(monkeypatch):
+    # An edge is a third of the height, and a position at most half an edge away.
+    expected, _ = _pressed(monkeypatch, down=0.3)
+    found, _ = _pressed(monkeypatch, down=0.3, moved=False)
     np.testing.assert_allclose(found, expected, atol=1e-8)
 
 

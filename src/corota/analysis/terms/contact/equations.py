@@ -28,6 +28,7 @@ from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms, newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm, few
 from corota.analysis.terms.contact.gaps import (
+    FAR,
     PATIENCE,
     SAME,
     SMALL,
@@ -62,10 +63,8 @@ pivoted = lazy("corota.analysis.terms.contact.pivoting:pivoted")
 explanation = lazy("corota.analysis.terms.contact.output:explanation")
 pressures = lazy("corota.analysis.terms.contact.output:pressures")
 
-#: Search radius: displacement of an increment found by pivoting, relative to its first correction,
-#: beyond which it counts as a jump to another equilibrium. Under forces it passes a limit point
-#: unseen from twice of it on.
-JUMP = 4.0
+#: Merit of a correction: fraction of the friction bound from which it is repeated with slip.
+FRICTION_EXCESS = 2.0
 
 
 class ContactEquations:
@@ -452,7 +451,7 @@ class ContactEquations:
                 self.border.dropped.difference_update(slips.tolist())
                 over = moved
                 if early:
-                    over = over | (s == CLOSED) & (np.abs(q1 - q) > bound)
+                    over = over | (s == CLOSED) & (np.abs(q1) > FRICTION_EXCESS * bound)
                 s[over] = SLIPPING
                 slip_direction = self.slip_directions[k]
                 slip_direction = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction)
@@ -609,7 +608,7 @@ class ContactEquations:
     def near(self, u: Floats) -> bool:
         """Whether an equilibrium is near the start, as far as its first correction says."""
         moved = float(np.abs((u - self.origin)[~self.system.is_rotation]).max())
-        return not self.first_move or moved <= JUMP * self.first_move
+        return not self.first_move or moved <= FAR * self.first_move
 
     @property
     def force(self) -> Floats:

@@ -27,8 +27,11 @@ SAME = 1e-9
 #: touches (as where a node of the other side carries both), that a fixed surface may be pressed
 #: into another fixed one, slip that turns the friction of a node round whose stiffness does not
 #: count; residual from which only digits are missing: states that do
-#: not change any more are those of the end, and a position on the way is reached.
+#: not change any more are those of the end; stiffness of springs that relaxation leaves out.
 SMALL = 1e-6
+#: Search radius, in lengths that a correction was to go: beyond it lies another equilibrium, or
+#: another kink. Under forces twice of it passes a limit point unseen.
+FAR = 4.0
 #: Entries of a table that is filled at once, and of a matrix that is kept dense, with a row and a
 #: column for each constraint of a complementarity problem (memory and cost alone).
 AT_ONCE = 100_000

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.failure import GiveUp
-from corota.analysis.terms.contact.gaps import HALVINGS, WAITED, Kink, RightHandSides
+from corota.analysis.terms.contact.gaps import FAR, HALVINGS, WAITED, Kink, RightHandSides
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 #: Share that tells a jump from a gradual change: of a difference of contact forces, which halves
 #: with the way if it is gradual, and of a correction, which the next one takes back at a jump.
 JUMP = 0.2
-#: Search radius of a kink in the next iterations, in distances between its sides.
-WIDTH = 4.0
 
 
 class Sides:
@@ -117,7 +115,7 @@ def found(sides: Sides, here: Floats, there: Floats) -> Kink | None:
     apart = float(kink.normal @ (there - here))
     if apart <= sides.noise:
         return None  # rounding, or the jump drives the bodies apart: nothing rests there
-    kink.width, kink.distance = WIDTH * apart, 0.5 * (at[0] + at[1]) * apart
+    kink.width, kink.distance = FAR * apart, 0.5 * (at[0] + at[1]) * apart
     return kink
 
 

@@ -109,6 +109,8 @@ class _Creep:
         self.corrections = 0
         #: Displacement at which the corrections of a position begin.
         self.begun = u
+        #: What is said of the equilibrium that is found.
+        self.said = ""
         #: Displacements that the bodies have to stay near.
         self.within: Floats | None = None
         edges = [float(p.slave.length.min()) for p in self.problem.term.pairs]
@@ -123,7 +125,7 @@ class _Creep:
             if failed:
                 share, reason = share / EASED**2, failed
                 continue
-            share *= EASED
+            share = FIRST if self.left.any() else share * EASED
             if self._leaves(self.z):
                 break
             if share >= SMALL:
@@ -133,7 +135,7 @@ class _Creep:
                 break
             if out.converged:
                 out.iterations = self.corrections
-                out.note = f"found by relaxation in {self.corrections} iterations"
+                out.note = f"found by relaxation in {self.corrections} iterations{self.said}"
                 return out
             share, reason = SMALL / EASED**WAITED**2, out.reason
         reason = (
@@ -157,7 +159,9 @@ class _Creep:
         problem, states = self.problem, self.problem.last
         problem.forget()
         problem.last, problem.relaxing = states, True
-        self.begun = problem.since = problem.term.slip_start = self.z[: problem.n].copy()
+        self.begun = problem.since = self.z[: problem.n].copy()
+        # In dynamics rates are those of the whole increment.
+        problem.term.slip_start = None if problem.rule.moves else self.begun
 
     def _place(self, share: float) -> str:
         """Move to the next position, with springs of a fraction of the nodal stiffness.
@@ -182,9 +186,11 @@ class _Creep:
     def _corrected(self, share: float) -> str:
         """Corrections of one position."""
         problem, time, rule = self.problem, self.step_time, self.problem.rule
-        z, left = self.z, self.left
+        z, removed = self.z, REMOVED
+        far = self._largest(self.left)
+        part = min(1.0, 0.5 * self.farthest / far) if far > 0.0 else 1.0
+        left = part * self.left
         at = self.system.evaluate(z, time, rule)
-        removed = REMOVED
         for _ in range(PATIENCE):
             self._keep_overlap(at, removed)
             dz, _ = problem.correct(at, -at.residual, left)
@@ -203,8 +209,10 @@ class _Creep:
         else:
             if share < ERROR:
                 return f"no convergence in {PATIENCE} iterations (residual {norms.size:.1e})"
-        self.z, self.left = z, left
-        return ""
+        reason = problem.refuse(at, z)
+        if not reason:
+            self.z, self.left = z, (1.0 - part) * self.left
+        return reason
 
     def _keep_overlap(self, at: Evaluation, removed: float) -> None:
         """Make the conditions those on rates: of an overlap, only a part is a gap to close."""
@@ -220,12 +228,14 @@ class _Creep:
         Friction acts against the slips of the whole increment. Where no equilibrium with these is
         found, as behind a jump, friction of the way is over, and slips count from the position.
         """
+        problem = self.problem
         out = self._unsprung(None)
-        if out.converged:
+        if out.converged or problem.rule.moves or not any(pair.rubs for pair in problem.term.pairs):
             return out
-        out = self._unsprung(self.z[: self.problem.n].copy())
+        out = self._unsprung(self.z[: problem.n].copy())
         if out.converged and out.at is not None:
             self._count_slips(out.at, out.u)
+            self.said = ", with friction against slips from the position of rest"
         return out
 
     def _unsprung(self, slip_start: Floats | None) -> Outcome:
@@ -256,6 +266,9 @@ class _Creep:
         """Take the slips of the whole way, of which friction did work."""
         term, state, n = self.problem.term, at.contact_state, self.problem.n
         term.slip_start = None
+        rates = [(pair.rate, pair.friction) for pair in term.pairs]
         whole = term.evaluate(z[:n], state.multipliers, state.time, np.zeros(0))
         for terms, of_way in zip(state.terms, whole.terms, strict=True):
             terms.slip = of_way.slip
+        for pair, (rate, friction) in zip(term.pairs, rates, strict=True):
+            pair.rate, pair.friction = rate, friction
