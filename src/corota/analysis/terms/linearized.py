@@ -19,7 +19,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from corota.analysis.linear.factor import Factor
 from corota.analysis.linear.triplets import Triplets, nonempty_columns
 from corota.analysis.terms.attachments import Attachments
-from corota.analysis.terms.contact.gaps import SAME
+from corota.analysis.terms.contact.gaps import COMPLIANCE
 from corota.analysis.terms.damping import damping_matrix
 from corota.analysis.terms.inertia import Inertia
 from corota.errors import SingularError, UnsupportedError
@@ -239,7 +239,7 @@ class Linearized:
         rows = self._hard[loose]
         if self._normal is None:
             normal = (rows.T @ rows).tocsc()
-            trace = SAME * normal.diagonal().max()
+            trace = COMPLIANCE * normal.diagonal().max()
             self._normal = splu(normal + trace * sp.eye_array(normal.shape[0], format="csc"))
         return self._hard @ self._normal.solve(-(rows.T @ force[loose]))
 

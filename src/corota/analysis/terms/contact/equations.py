@@ -28,6 +28,7 @@ from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms, newton
 from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm, few
 from corota.analysis.terms.contact.gaps import (
+    COMPLIANCE,
     FAR,
     PATIENCE,
     SAME,
@@ -62,9 +63,6 @@ both_sides = lazy("corota.analysis.terms.contact.kinks:both_sides")
 pivoted = lazy("corota.analysis.terms.contact.pivoting:pivoted")
 explanation = lazy("corota.analysis.terms.contact.output:explanation")
 pressures = lazy("corota.analysis.terms.contact.output:pressures")
-
-#: Merit of a correction: fraction of the friction bound from which it is repeated with slip.
-FRICTION_EXCESS = 2.0
 
 
 class ContactEquations:
@@ -451,7 +449,7 @@ class ContactEquations:
                 self.border.dropped.difference_update(slips.tolist())
                 over = moved
                 if early:
-                    over = over | (s == CLOSED) & (np.abs(q1) > FRICTION_EXCESS * bound)
+                    over = over | (s == CLOSED) & (np.abs(q1 - q) > bound)
                 s[over] = SLIPPING
                 slip_direction = self.slip_directions[k]
                 slip_direction = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction)
@@ -776,6 +774,6 @@ def linearized_contact(
         # Slips of a pair with a pressure law have no compliance either.
         hard[pair.first + pair.n : pair.first + pair.width] = True
     bare = hard & (coupling.diagonal <= 0.0)
-    coupling.diagonal[bare] = -SAME * own[bare]
+    coupling.diagonal[bare] = -COMPLIANCE * own[bare]
     term.revert()
     return at, coupling, residuals, states, term.law_multipliers()

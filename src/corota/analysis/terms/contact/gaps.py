@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
 
 #: Rounding bound: relative difference of lengths, areas, parts of a way and forces that is
-#: rounding; compliance of closed constraints relative to that of their nodes, with which those that
-#: follow from others leave a matrix regular, and share the force.
+#: rounding.
 SAME = 1e-9
 #: Rest of Newton's method over its whole, as of a length over an edge: depth up to which a node
 #: touches (as where a node of the other side carries both), that a fixed surface may be pressed
@@ -29,6 +28,9 @@ SAME = 1e-9
 #: count; residual from which only digits are missing: states that do
 #: not change any more are those of the end; stiffness of springs that relaxation leaves out.
 SMALL = 1e-6
+#: Regularization of redundant constraints: compliance of closed ones relative to that of their
+#: nodes: constraints that follow from others then leave a matrix regular, and share the force.
+COMPLIANCE = 1e-10
 #: Search radius, in lengths that a correction was to go: beyond it lies another equilibrium, or
 #: another kink. Under forces twice of it passes a limit point unseen.
 FAR = 4.0

@@ -39,8 +39,8 @@ from corota._core import CLOSED, OPEN
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.gaps import (
     AT_ONCE,
+    COMPLIANCE,
     PATIENCE,
-    SAME,
     SMALL,
     WAITED,
     ContactState,
@@ -474,7 +474,7 @@ class UnilateralConstraints:
         """
         m, t, of, tied = len(self.gap), len(self.slip), self.of, self.tied
         rest, matrix = np.concatenate([self.gap, self.slip]), self.matrix.copy()
-        matrix.flat[:: m + t + 1] *= 1.0 + SAME * (np.append(self.ruled, np.zeros(t)) == 0.0)
+        matrix.flat[:: m + t + 1] *= 1.0 + COMPLIANCE * (np.append(self.ruled, np.zeros(t)) == 0.0)
         held, start, normal, slips = np.append(tied, tied[of]), rest, np.arange(m), np.arange(t)
         free = np.arange(m + t)
         if tied.any():
@@ -524,7 +524,7 @@ class UnilateralConstraints:
             gap = self.soft + self.share * (self.matrix @ z)[:m]
             pressure, slope = self.law(gap)
             missed = np.abs(z[:m] - pressure)
-            rounding = SAME * pressure.max(initial=0.0) - slope * self.tolerance
+            rounding = COMPLIANCE * pressure.max(initial=0.0) - slope * self.tolerance
             if (missed <= rounding)[self.ruled].all():
                 states = np.full(m, CLOSED, np.int8)
                 states[normal], turned[slips] = after, direction[of]
