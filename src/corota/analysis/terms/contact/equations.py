@@ -29,6 +29,7 @@ from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.contact import ContactTerm, few
 from corota.analysis.terms.contact.gaps import (
     COMPLIANCE,
+    EXCESS,
     FAR,
     PATIENCE,
     SAME,
@@ -417,7 +418,7 @@ class ContactEquations:
         right_sides: RightHandSides,
         found: Solution,
     ) -> tuple[Solution, States]:
-        """Let constraints slip at once that a correction alone would load beyond friction.
+        """Let constraints slip at once that a correction would load far beyond friction.
 
         Otherwise a large displacement of supports distorts the mesh before anything slips. What
         supports move over the surface slips in any case: no traction can hold it.
@@ -449,7 +450,7 @@ class ContactEquations:
                 self.border.dropped.difference_update(slips.tolist())
                 over = moved
                 if early:
-                    over = over | (s == CLOSED) & (np.abs(q1 - q) > bound)
+                    over = over | (s == CLOSED) & (np.abs(q1) > EXCESS * bound)
                 s[over] = SLIPPING
                 slip_direction = self.slip_directions[k]
                 slip_direction = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction)

@@ -34,6 +34,9 @@ COMPLIANCE = 1e-10
 #: Search radius, in lengths that a correction was to go: beyond it lies another equilibrium, or
 #: another kink. Under forces twice of it passes a limit point unseen.
 FAR = 4.0
+#: Force of a correction, over what a constraint or a kink can carry, from which it is not
+#: followed: the constraint slips at once, the bodies do not rest at the kink.
+EXCESS = 2.0
 #: Entries of a table that is filled at once, and of a matrix that is kept dense, with a row and a
 #: column for each constraint of a complementarity problem (memory and cost alone).
 AT_ONCE = 100_000

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.failure import GiveUp
-from corota.analysis.terms.contact.gaps import FAR, HALVINGS, WAITED, Kink, RightHandSides
+from corota.analysis.terms.contact.gaps import EXCESS, FAR, HALVINGS, WAITED, Kink, RightHandSides
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -188,11 +188,6 @@ def _kink(
     return Kink(-pressures / size, -moves / size, jump) if size > 0.0 else None
 
 
-#: Jumps beyond the forces of both sides in which an equilibrium is searched: farther, the bodies do
-#: not rest there.
-OUTSIDE = 2.0
-
-
 def keeps_kink(problem: ContactEquations, at: Evaluation) -> bool:
     """Whether the correction is one at a kink; looks for one where there is no progress."""
     if problem.kink is not None:
@@ -248,7 +243,7 @@ def along_kink(
         problem.kink = None
         return None
     change = (kink.distance - float(first)) / float(second)
-    if not -OUTSIDE <= kink.share + change <= 1.0 + OUTSIDE:
+    if not -EXCESS <= kink.share + change <= 1.0 + EXCESS:
         problem.kink = None
         return None
     dz: Floats = z[:, 0] + change * z[:, 1]

@@ -258,7 +258,7 @@ def _overcome(problem: ContactEquations, at: Evaluation) -> str:
         if pair.rubs and bound > 0.0:
             used[pair.name] = abs(float((q * terms.area).sum())) / bound
     name = max(used, key=lambda name: used[name], default="")
-    if name and (used[name] > 1.0 + NAMED or min(used.values()) > 1.0 - NAMED):
+    if name and (used[name] > 1.0 + SAME or min(used.values()) > 1.0 - NAMED):
         return (
             f"friction of contact pair {name!r} does not hold the bodies from the start: they slide"
         )
