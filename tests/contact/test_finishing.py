@@ -169,16 +169,21 @@ def test_relaxation_passes_positions_at_which_gaps_jump(number, size):
         np.testing.assert_allclose(np.sum(forces, axis=0), 0.0, atol=1e-7 * size)
 
 
-def _pressed(monkeypatch, down=0.1, farthest=np.inf, moved=True):
-    """A block that a floor compresses, relaxed; what evaluations failed.
+def _pressed(monkeypatch, down, farthest=np.inf, moved=True):
+    """A block that a floor compresses, relaxed, against Newton's method in one increment.
 
     Elements fail where a node moves farther than a distance from the last evaluation. The support
-    has moved before relaxation begins, or moves in it.
+    has moved before relaxation begins, or moves in it. Returns the evaluations that failed.
     """
     model = ct.Model(ct.mesh.rectangle(1.0, 1.0, 3, 3, "quad4"))
-    model.section("all", element="Q4I", material=ct.Elastic(E=10.0, nu=0.3), plane="strain")
+    material = ct.Elastic(E=10.0, nu=0.3)
+    model.section(
+        "all", element="Q4I", material=material, plane="strain", local_strain="logarithmic"
+    )
     model.contact("bottom", ct.RigidCurve.line((-1.0, 0.0), (2.0, 0.0)), friction=0.2)
     model.fix("top", x=0.0, y=-down)
+    expected = ct.solve(model, ct.Static(first_increment=1.0), threads=1)
+    assert len(expected.frames) == 2
     system = System(model, Multifrontal())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
     start = system.conditions.supports.at(1.0, np.zeros(system.n_dofs))
@@ -197,22 +202,20 @@ def _pressed(monkeypatch, down=0.1, farthest=np.inf, moved=True):
     monkeypatch.setattr(system, "evaluate", evaluate)
     found, _ = relax(system, begin, start, 1.0, Settings())
     assert found.converged, found.reason
-    return found.u, failed
+    exact = expected.frames[-1].U[:, :2].ravel()
+    np.testing.assert_allclose(found.u, exact, atol=1e-8)
+    return failed
 
 
 def test_relaxation_in_which_an_element_fails_goes_on_with_stiffer_springs(monkeypatch):
-    expected, none = _pressed(monkeypatch)
-    assert not none
-    found, failed = _pressed(monkeypatch, farthest=0.02)
-    assert failed
-    np.testing.assert_allclose(found, expected, atol=1e-8)
+    assert not _pressed(monkeypatch, 0.1)
+    assert _pressed(monkeypatch, 0.1, farthest=0.02)
 
 
-def test_relaxation_moves_supports_by_more_than_a_position_may(monkeypatch):
+@pytest.mark.parametrize("down", [0.1, 0.2, 0.3])
+def test_relaxation_moves_supports_by_more_than_a_position_may(monkeypatch, down):
     # An edge is a third of the height, and a position at most half an edge away.
-    expected, _ = _pressed(monkeypatch, down=0.3)
-    found, _ = _pressed(monkeypatch, down=0.3, moved=False)
-    np.testing.assert_allclose(found, expected, atol=1e-8)
+    _pressed(monkeypatch, down, moved=False)
 
 
 def test_a_body_that_contact_never_holds_is_said_to_rest_anywhere():
@@ -280,3 +283,14 @@ def test_slip_is_solved_alike_by_gmres_and_by_the_whole_matrix(number, monkeypat
     assert compared
     # GMRES ends at 1e-9 of its own residual; some of these matrices are nearly singular.
     assert max(compared) < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("number", "exact"), [(340, 0.105947), (502, 0.0563506), (1080, 0.0857143)]
+)
+def test_default_increments_move_bodies_on_friction_as_fine_ones_do(number, exact):
+    """Two stacks and a press fit; `exact` is with 200 and 414 increments.
+
+    Where constraints slipped early from less load, these had 2 to 10 % error.
+    """
+    assert run(number, limit=60, size=0.5)["moved"] == pytest.approx(exact, rel=0.01)

@@ -81,27 +81,6 @@ def test_a_closed_slit_that_sticks_carries_shear_as_if_it_were_not_there(method:
     np.testing.assert_allclose(force[:2], expected[:2], rtol=1e-4)
 
 
-@pytest.mark.parametrize("nlgeom", [True, False])
-@pytest.mark.parametrize("element", ["Q4I", "T3", "Q4D"])
-def test_edges_on_both_sides_of_a_node_are_no_vertex(element: str, nlgeom: bool) -> None:
-    """The outline of a block in contact with itself has no force, however the block is loaded.
-
-    The node halfway up its side is as far from the ends of an edge above as of one below, and
-    was held by one of them as if they met there.
-    """
-    mesh = ct.mesh.rectangle(2.0, 1.0, 2, 2, "tri3" if element == "T3" else "quad4")
-    names = ("bottom", "right", "top", "left")
-    mesh.edge_sets["outline"] = np.concatenate([mesh.edge_sets[name] for name in names])
-    model = ct.Model(mesh)
-    model.section("all", element=element, material=ct.Elastic(E=YOUNG, nu=0.3))
-    model.contact("outline", "outline", method="node_to_segment")
-    model.fix("left")
-    step = ct.Static(nlgeom=nlgeom)
-    step.fix("right", x=-0.05, y=None)
-    frame = ct.solve(model, step, threads=1).frames[-1]
-    assert not frame.C[:, 0].any()
-
-
 CELLS = {"T3": "tri3", "T6": "tri6", "Q8R": "quad8"}
 
 
@@ -115,8 +94,9 @@ def test_nodes_beside_a_corner_are_not_in_its_other_face(
 ) -> None:
     """The outline of a block has no force, pressed or pressed and sheared.
 
-    A node of the top lies behind the left side, less deep than half of the block's height. The
-    block pressed with 476 for 0 there, or its run stopped.
+    A node of the top lies behind the left side, less deep than half of the block's height: a block
+    pressed with 476 for 0 there, or its run stopped. A node halfway up its side is as far from the
+    ends of an edge above as of one below, which are no vertex for it.
     """
     mesh = ct.mesh.rectangle(2.0, 1.0, *cells, CELLS.get(element, "quad4"))  # type: ignore[arg-type]
     names = ("bottom", "right", "top", "left")
