@@ -22,6 +22,12 @@ def __getattr__(name: str) -> Any:
         own = home == __name__
         module = import_module(f"{home}.{name}" if own else home)
         value = module if own else getattr(module, name)
+    except ModuleNotFoundError as error:
+        if error.name != "corota._core":
+            raise
+        from corota.errors import NO_CORE
+
+        raise ModuleNotFoundError(NO_CORE, name=error.name) from None
     except (MemoryError, SystemError) as error:
         from corota.errors import SHORT, ResourceError, is_shortage
 

@@ -12,6 +12,8 @@ from typing import Any
 
 #: Message where an allocation of Python fails.
 SHORT = "not enough memory for this job; use a coarser mesh or a larger machine"
+#: Message where the compute core is missing.
+NO_CORE = "the compute core, corota._core, is not built; use make setup, or pip install ."
 
 
 @dataclass(frozen=True)

@@ -110,6 +110,41 @@ def test_linear_procedures_have_its_damping(monkeypatch: pytest.MonkeyPatch) -> 
     assert found[0] == pytest.approx(found[1], rel=1e-9)
 
 
+class OneNode(Term):
+    """A force -c v along x on the nodes of a set, without energy if it is said to store some."""
+
+    def __init__(self, system: Any, stores: bool) -> None:
+        self.system, self.stores = system, stores
+        self.dofs = system.dofs(system.model.mesh.node_sets["magnet"], 0)
+
+    def add(self, point: StatePoint, at: Evaluation) -> None:
+        force, slope = np.zeros((2, self.system.n_dofs))
+        force[self.dofs] = STRENGTH * point.v[self.dofs]
+        slope[self.dofs] = STRENGTH * point.weights[1]
+        if self.stores:
+            at.internal += force
+        else:
+            at.add_damping(force)
+        at.scale += np.abs(force)
+        if len(at.values):
+            self.system.pattern.add_diagonal(at.values, slope)
+
+
+@pytest.mark.parametrize("stores", [False, True])
+def test_a_force_on_one_node_slows_a_stiff_block(
+    monkeypatch: pytest.MonkeyPatch, stores: bool
+) -> None:
+    """``v = v0 exp(-c t / m)``; a force that is in no energy is named where energy is lost."""
+    model = flying(monkeypatch, WIDTH)
+    monkeypatch.setitem(TERMS, "eddy brake", lambda system: OneNode(system, stores))
+    model.mesh.node_sets["magnet"] = np.array([0])
+    results = ct.solve(model, ct.Dynamic(period=4.0, increments=200), threads=1)
+    momentum = results.history("momentum x")
+    assert momentum[-1] == pytest.approx(10.0 * math.exp(-STRENGTH / 2.0 * 4.0), rel=1e-3)
+    named = [note for note in results.notes if "a force of 'user-defined term'" in note]
+    assert len(named) == stores
+
+
 class Counter(EddyBrake):
     """The same with a history: the heat so far."""
 

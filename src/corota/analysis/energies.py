@@ -202,6 +202,8 @@ class Energies:
             f"energy balance: {abs(self.error):.1%} of the largest energy is {verb} by step "
             f"{self.where[0]}, increment {self.where[1]} (ETOTAL): "
         )
+        if own := [repr(term.name) for term in self.system.terms[2:-1]]:
+            text += f"a force of {', '.join(own)} that is in no energy (Term.energies), or "
         impacts = self.system.opens
         if self.scheme == "energy_momentum" or (self.scheme == "newmark" and not impacts):
             return text + "use smaller increments"

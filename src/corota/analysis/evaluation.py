@@ -62,7 +62,7 @@ class Evaluation:
         return self.internal - self.external
 
     def add_damping(self, force: Floats) -> None:
-        """Add a force that dissipates energy."""
+        """Add a force that dissipates energy: along the velocity, on the side of the stresses."""
         self.damping = force if self.damping is None else self.damping + force
 
     def add_spring(self, stiffness: Floats, moved: Floats) -> None:

@@ -104,7 +104,7 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
     """Run a command; every error becomes a message and an exit code."""
     from importlib import import_module
 
-    from corota.errors import SHORT, CorotaError, is_shortage
+    from corota.errors import NO_CORE, SHORT, CorotaError, is_shortage
 
     try:
         import corota._core as _core
@@ -123,7 +123,7 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
         return error.exit_code
     except ImportError as error:
         _trace()
-        terminal.error(str(error))
+        terminal.error(NO_CORE if error.name == "corota._core" else str(error))
         return 5
     except MemoryError:
         _trace()

@@ -78,7 +78,7 @@ class Term(Protocol):
     """
 
     #: Name in messages.
-    name: str
+    name: str = "user-defined term"
     #: Number of its multipliers, unknowns besides the dofs.
     unknowns: int = 0
     #: Remarks for the user after the start.
@@ -106,9 +106,10 @@ class Term(Protocol):
     def add(self, point: StatePoint, at: Evaluation) -> None:
         """Add the force to `at`, its size to the scale, and its derivative to the tangent.
 
-        A force that stores energy adds to `at.internal`, one of velocities by `at.add_damping`. Its
-        derivatives by displacement and velocity are multiplied by the `weights` of the point. The
-        tangent is not needed where `at.values` is empty.
+        The force stands on the side of the stresses: what pulls a body back along its displacement
+        or velocity is positive. One that stores energy adds to `at.internal`, one of velocities by
+        `at.add_damping`. Its derivatives by displacement and velocity are multiplied by the
+        `weights` of the point. The tangent is not needed where `at.values` is empty.
         """
 
     def holds(self, time: float) -> bool:
@@ -180,6 +181,7 @@ class Term(Protocol):
         return True
 
 
-#: User-defined terms: each entry gives the term of a model, or ``None`` where it has none. They
-#: act on displacements and velocities, in every scheme and in all linear procedures.
+#: User-defined terms: each entry gives the term of a model, or ``None`` where it has none
+#: (``docs/howto/user_term.md``). They act on displacements and velocities, in every scheme and in
+#: all linear procedures.
 TERMS: dict[str, Callable[[NumberedModel], Term | None]] = {}
