@@ -145,6 +145,13 @@ def test_a_force_on_one_node_slows_a_stiff_block(
     assert len(named) == stores
 
 
+def test_a_force_that_is_not_finite_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The message has the name of the term, not the number of an equation alone."""
+    model = flying(monkeypatch, math.nan)
+    with pytest.raises(ct.ModelError, match="'eddy brake' is not a finite number"):
+        ct.solve(model, ct.Dynamic(period=1.0, increments=2), threads=1)
+
+
 class Counter(EddyBrake):
     """The same with a history: the heat so far."""
 

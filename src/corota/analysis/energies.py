@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 #: Energies by Abaqus's names, with descriptions; ALLTH and ALLCL are ours.
-TERMS = {
+ENERGIES = {
     "ALLSE": "recoverable strain energy",
     "ALLPD": "plastic work",
     "ALLCD": "work of creep and of viscoelasticity that is not recoverable",
@@ -171,7 +171,7 @@ class Energies:
         if abs(missing) > abs(self._worst):
             self._worst, self.where = missing, where
         self.error = self._worst / self._largest if known else 0.0
-        scalars.update({name: own[name] for name in TERMS if name in own})
+        scalars.update({name: own[name] for name in ENERGIES if name in own})
         scalars["energy balance"] = missing
         scalars["energy balance error"] = missing / self._largest if known else 0.0
 

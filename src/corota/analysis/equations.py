@@ -23,7 +23,7 @@ from corota.analysis.terms.conditions import Conditions
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.elements import Elements
 from corota.analysis.terms.term import TERMS, StatePoint, Term
-from corota.errors import SingularError
+from corota.errors import InputError, ModelError, SingularError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -289,6 +289,8 @@ class System(NumberedModel):
         ------
         SingularError
             Naming the unconstrained node and dof.
+        ModelError
+            Naming the user-defined terms, if numbers are not finite.
         """
         return self._correct(at, at.external - at.internal, du_prescribed)
 
@@ -360,6 +362,12 @@ class System(NumberedModel):
             x = self.linear.solve(force)
         except SingularError as error:
             raise self.singular(error) from None
+        except InputError as error:
+            # Elements and loads refuse numbers that are not finite themselves.
+            if own := ", ".join(repr(term.name) for term in self.terms[2:-1]):
+                text = f"a force or a derivative of {own} is not a finite number ({error})"
+                raise ModelError(text) from None
+            raise
         x[constrained] = moved[constrained]
         return link.expand(x), (inertia[1] if inertia is not None else -1)
 
