@@ -94,3 +94,46 @@ def test_a_sleeve_is_pushed_along_a_rigid_bore(element: str, method: str) -> Non
     exact = 2.0 * np.pi * 20.0 * 10.0 * (2.0 * 10.0 * 100.0 / 500.0)
     assert abs(normal) == pytest.approx(exact, rel=1e-2)
     assert abs(along / normal) == pytest.approx(0.2, rel=1e-3)
+
+
+def cone(element: str, outwards: bool, nx: int = 8) -> tuple[ct.Mesh, int]:
+    """A conical ring with a free lower edge, outside or inside, and the node at that edge."""
+    cell = "tri3" if element == "T3" else "quad4"
+    mesh = ct.mesh.rectangle(12.0, 1.25, nx, 2, cell=cell)
+    s, t = mesh.points.T.copy()
+    c, d = np.cos(0.1), np.sin(0.1 if outwards else -0.1)
+    mesh.points[:] = np.stack([13.0 + c * s + d * t, c * t - d * s], axis=1)
+    return mesh, int(np.argmin(mesh.points[:, 1]))
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("element", ["Q4", "Q4I", "Q4S", "Q4R", "T3"])
+@pytest.mark.parametrize("outwards", [True, False])
+def test_the_edge_of_a_lip_lies_on_a_plate(outwards: bool, element: str, method: str) -> None:
+    """A plate that lifts the edge of a clamped cone: the same as a support of its last node.
+
+    The section turns about the edge. Pressed far down and back in one increment each.
+    """
+    forces = []
+    for plated in (True, False):
+        mesh, edge = cone(element, outwards)
+        low = float(mesh.points[edge, 1])
+        plate = ct.mesh.add_node(mesh, 0.0, low - 1.0, "plate")
+        model = ct.Model(mesh)
+        model.section(
+            "all", element=element, material=ct.Elastic(E=1000.0, nu=0.3), plane="axisymmetric"
+        )
+        model.fix("left" if outwards else "right")
+        if plated:
+            floor = ct.RigidCurve.line((0.0, low), (60.0, low), reference=plate)
+            model.contact("bottom", floor, method=method)
+        steps = []
+        for up in (0.3, 0.1):
+            step = ct.Static()
+            step.fix("plate" if plated else [edge], x=None, y=up)
+            steps.append(step)
+        frames = ct.solve(model, steps, threads=1).frames[-2:]
+        for frame, up in zip(frames, (0.3, 0.1), strict=True):
+            assert frame.U[edge, 1] == pytest.approx(up, abs=1e-9)
+        forces.append([frame.RF[plate if plated else edge, 1] for frame in frames])
+    np.testing.assert_allclose(forces[0], forces[1], rtol=1e-7)

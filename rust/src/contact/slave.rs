@@ -1,7 +1,7 @@
 //! The slave side of a pair: its edges, and the nodes that carry constraints.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::curve::{Edge, GAUSS, dot, outward, unit};
+use super::curve::{Curve, Edge, GAUSS, dot, outward, unit};
 use crate::base::Smooth;
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
@@ -28,6 +28,17 @@ impl Depth {
         match self {
             Self::Thickness(t) => length.scale(t),
             Self::Circumference => (length * x()).scale(TAU),
+        }
+    }
+
+    /// Slope of the area along a straight edge from -1 to 1, over its mean.
+    pub fn growth(self, edge: &Curve<f64>) -> f64 {
+        match self {
+            Self::Thickness(_) => 0.0,
+            Self::Circumference => {
+                let [first, last] = [-1.0, 1.0].map(|r| edge.at(r)[0]);
+                (last - first) / (last + first)
+            }
         }
     }
 }

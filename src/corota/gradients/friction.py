@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import norm, splu
 
 from corota.errors import UnsupportedError
 from corota.gradients.differences import all_derivatives
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 #: Step of a position over the size of a cell.
 STEP = 1e-5
+#: Share of a traction on free nodes that is none.
+NONE = 1e-12
 
 
 def surface_dofs(system: System) -> Ints:
@@ -85,8 +87,10 @@ def solve(
     matrix = matrix + sp.csr_array(slopes[:n]) @ spread
     rows_of = sp.csr_array(slopes[n:]) @ spread
     border, diagonal = _by_multipliers(system, u, time, surfaces)
-    which = np.flatnonzero(surfaces.acting)
     free = np.flatnonzero(~system.conditions.constrained)
+    # A traction that supports take alone, as at a plane of symmetry, changes nothing.
+    moved_by = norm(border[free], axis=0) > NONE * norm(border, axis=0)
+    which = np.flatnonzero(surfaces.acting & moved_by)
     held = np.flatnonzero(system.conditions.constrained)
     whole = sp.block_array(
         [[matrix, border[:, which]], [rows_of[which], diagonal[which][:, which]]], format="csc"

@@ -190,10 +190,18 @@ fn positive(n: usize) -> Functions {
     }
 }
 
-/// Functions that are biorthogonal to the shape functions of an edge of uniform area.
-fn biorthogonal(n: usize) -> Functions {
+/// Functions that are biorthogonal to the shape functions of an edge.
+///
+/// The area of a linear edge, for a length, is in proportion to 1 + `growth` xi: with those of a
+/// uniform area the gap of its other node would count at the node of a ring. Those of quadratic edges
+/// are exact for linear gaps on rings as they are.
+fn biorthogonal(n: usize, growth: f64) -> Functions {
     if n == 2 {
-        [[0.5, -1.5, 0.0], [0.5, 1.5, 0.0], [0.0; 3]]
+        let q = growth;
+        let scale = 0.5 / (3.0 - q * q);
+        let slope = scale * (9.0 - q * q);
+        let at = |q: f64| scale * (3.0 - q) * (1.0 + q);
+        [[at(q), -slope, 0.0], [at(-q), slope, 0.0], [0.0; 3]]
     } else {
         [[-0.25, -0.5, 1.25], [-0.25, 0.5, 1.25], [1.5, 0.0, -2.5]]
     }
@@ -409,10 +417,8 @@ impl Mortar {
         let curvature: Vec<f64> = (0..sides.master.len()).map(curvature).collect();
         let curved = curvature.iter().any(|k| *k != 0.0);
         let dual = |i: usize, end: bool| {
-            // Around an axis nothing tips, and the corner of a linear edge on it would have no area.
-            let plane = matches!(sides.slave.thickness[i], Depth::Thickness(_));
             let linear = sides.slave.edges[i].n_nodes == 2;
-            !sides.itself && (!linear || plane && (end || curved || round[i]))
+            !sides.itself && (!linear || end || curved || round[i])
         };
         let all = 0..sides.slave.edges.len();
         let inner = all.clone().map(|i| dual(i, false)).collect();
@@ -505,7 +511,9 @@ impl Mortar {
             _ => constraints[a],
         };
         let dual = self.dual[i] && !self.fillet[j];
-        let functions = if dual { biorthogonal } else { positive }(edge.n_nodes);
+        let growth = sides.slave.thickness[i].growth(&sides.reference[i]);
+        let functions =
+            if dual { biorthogonal(edge.n_nodes, growth) } else { positive(edge.n_nodes) };
         let facing = Facing {
             slave,
             master,

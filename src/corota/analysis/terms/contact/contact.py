@@ -254,7 +254,7 @@ class ContactTerm(Term):
             pair.hold(constrained, self.persistent)
             if pair.law is not None and pair.active and pair.entered == self.number:
                 pair.measure(self.positions(self.u))
-            if self.number == 1 and pair.guided_ends.any() and not self.system.axisymmetric:
+            if self.number == 1 and pair.guided_ends.any():
                 mesh = self.system.model.mesh
                 note = guided_round_note(pair, mesh.points, mesh.node_labels)
                 self.notes += [note] if note else []
