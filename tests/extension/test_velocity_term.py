@@ -145,9 +145,14 @@ def test_a_force_on_one_node_slows_a_stiff_block(
     assert len(named) == stores
 
 
-def test_a_force_that_is_not_finite_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("touches", [False, True])
+def test_a_force_that_is_not_finite_is_named(
+    monkeypatch: pytest.MonkeyPatch, touches: bool
+) -> None:
     """The message has the name of the term, not the number of an equation alone."""
     model = flying(monkeypatch, math.nan)
+    if touches:
+        model.contact("bottom", ct.RigidCurve.line((-9.0, -1.0), (9.0, -1.0)))
     with pytest.raises(ct.ModelError, match="'eddy brake' is not a finite number"):
         ct.solve(model, ct.Dynamic(period=1.0, increments=2), threads=1)
 

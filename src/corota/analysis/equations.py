@@ -7,6 +7,7 @@ elements, loads and supports, but no increments or iterations.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
@@ -23,7 +24,7 @@ from corota.analysis.terms.conditions import Conditions
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.elements import Elements
 from corota.analysis.terms.term import TERMS, StatePoint, Term
-from corota.errors import InputError, ModelError, SingularError
+from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -209,8 +210,13 @@ class System(NumberedModel):
         rule.add_elements(self.elements, point, at)
         if not (self.scales.stiffest or rule.moves) and len(at.values):
             self.scales.measure(at.values)
-        for term in self.terms[1:-1]:
+        self.conditions.add(point, at)
+        for term in self.terms[2:-1]:
             term.add(point, at)
+            # Elements and loads refuse numbers that are not finite themselves.
+            parts = (at.internal, at.external, at.values, at.damping)
+            if not all(part is None or math.isfinite(part.sum()) for part in parts):
+                raise ModelError(f"a force or a derivative of {term.name!r} is not a finite number")
 
     def damping_of_terms(self, u: Floats, values: Floats) -> tuple[Ints, Ints, Floats] | None:
         """Add the derivatives of user terms by velocity to `values`; unsymmetric ones as triplets.
@@ -289,8 +295,6 @@ class System(NumberedModel):
         ------
         SingularError
             Naming the unconstrained node and dof.
-        ModelError
-            Naming the user-defined terms, if numbers are not finite.
         """
         return self._correct(at, at.external - at.internal, du_prescribed)
 
@@ -362,12 +366,6 @@ class System(NumberedModel):
             x = self.linear.solve(force)
         except SingularError as error:
             raise self.singular(error) from None
-        except InputError as error:
-            # Elements and loads refuse numbers that are not finite themselves.
-            if own := ", ".join(repr(term.name) for term in self.terms[2:-1]):
-                text = f"a force or a derivative of {own} is not a finite number ({error})"
-                raise ModelError(text) from None
-            raise
         x[constrained] = moved[constrained]
         return link.expand(x), (inertia[1] if inertia is not None else -1)
 
