@@ -7,6 +7,7 @@ import re
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import corota as ct
@@ -106,3 +107,37 @@ def test_requests_are_written_and_checked(tmp_path: Path) -> None:
     path.write_text(DECK.format(element="CPS4", nlgeom="").replace("SURFACE=CUT,", "SURFACE=C,"))
     with pytest.raises(ct.DeckError, match=re.escape("no surface named 'C'")):
         ct.read(path)
+
+
+@pytest.mark.parametrize("part", ["whole", "patch"])
+@pytest.mark.parametrize("element", ["T3", "T6", "OPT", "Q4", "Q8R", "Q4D"])
+def test_elements_that_touch_a_surface_with_a_corner_belong_to_it(
+    element: str, part: str, tmp_path: Path
+) -> None:
+    """A block pressed on its top, or a part of it: at the top, at a cut and at the support."""
+    kinds = {"T3": "tri3", "OPT": "tri3", "T6": "tri6", "Q8R": "quad8"}
+    mesh = ct.mesh.rectangle(6.0, 3.0, 6, 3, cell=kinds.get(element, "quad4"))
+    _, pairs = mesh.cell_edges()
+    middle = np.array([mesh.points[n[:2]].mean(axis=0) for n in mesh.edge_nodes(pairs)])
+    ends = np.array([mesh.points[n[:2], 1] for n in mesh.edge_nodes(pairs)])
+    below = np.array([mesh.points[mesh.cells[0].nodes[cell, :3], 1].mean() for cell in pairs[:, 0]])
+    on_top = (ends == 3.0).all(axis=1)
+    mesh.edge_sets["patch"] = pairs[on_top & (middle[:, 0] > 2.0) & (middle[:, 0] < 4.0)]
+    mesh.edge_sets["whole"] = pairs[on_top]
+    mesh.edge_sets["cut"] = pairs[(ends == 1.0).all(axis=1) & (below < 1.0)]
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=1000.0, nu=0.3), thickness=2.0)
+    model.fix("bottom")
+    model.pressure(part, 10.0)
+    step = ct.Static(nlgeom=False)
+    step.outputs = [
+        ct.Output("section print", ("SOF",), where=where) for where in (part, "cut", "bottom")
+    ]
+    path = tmp_path / "job.dat"
+    ct.solve(model, step, threads=1).write(path)
+    blocks = path.read_text().split("statistics for surface set")[1:]
+    pressed = 10.0 * 2.0 * (6.0 if part == "whole" else 2.0)
+    for block, force in zip(blocks, (-pressed, -pressed, pressed), strict=True):
+        found = numbers(block, "total surface force")
+        assert found[:2] == pytest.approx([0.0, force], abs=1e-4)
+        assert found[5] == pytest.approx(3.0 * force, abs=1e-3)

@@ -1,7 +1,7 @@
 """Statistics of ``*SECTION PRINT`` in the layout of CalculiX's ``.dat`` file.
 
 CalculiX integrates stresses extrapolated to the surface. Here the force is that of the nodes of the
-surface on its elements: it is in equilibrium with loads and reactions.
+surface on the elements behind it: it is in equilibrium with loads and reactions.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import Floats, Ints, distinct
+from corota.arrays import Floats, Ints
 from corota.errors import UnsupportedError
 from corota.io.tables.dat_numbers import statistics
 from corota.model.sections import thickness_at
@@ -20,6 +20,7 @@ from corota.model.sections import thickness_at
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.model.steps import Output
     from corota.results.results import Frame
@@ -57,14 +58,15 @@ def section_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
 
 
 def _resultant(model: Model, frame: Frame, edges: Ints, x: Floats) -> tuple[Floats, float]:
-    """Force of the surface's nodes on its elements, and its moment about the origin."""
+    """Force of the surface's nodes on the elements behind it, and its moment about the origin."""
     mesh = model.mesh
-    inside = np.zeros(mesh.n_nodes, bool)
-    inside[mesh.edge_set_nodes(edges)] = True
-    cells = distinct(edges[:, 0])
-    force, moment, count = np.zeros(2), 0.0, 0
+    behind: dict[int, list[int]] = {}
+    for node, some in _behind(mesh, edges).items():
+        for cell in some:
+            behind.setdefault(cell, []).append(node)
+    force, moment = np.zeros(2), 0.0
     for block in frame.fields:
-        mine = np.flatnonzero(np.isin(block.cells, cells))
+        mine = np.flatnonzero(np.isin(block.cells, list(behind)))
         if not len(mine):
             continue
         if block.forces is None:
@@ -72,17 +74,53 @@ def _resultant(model: Model, frame: Frame, edges: Ints, x: Floats) -> tuple[Floa
                 "*SECTION PRINT: these results contain no forces of the elements; print it in the "
                 "run itself"
             )
-        count += len(mine)
         for row in mine.tolist():
-            where, local = mesh.locate(int(block.cells[row]))
+            cell = int(block.cells[row])
+            where, local = mesh.locate(cell)
             nodes = mesh.cells[where].nodes[local]
-            on = inside[nodes]
+            on = np.isin(nodes, behind[cell])
             f, at = block.forces[row][on], x[nodes[on]]
             force = force + f[:, :2].sum(axis=0)
             moment += float((at[:, 0] * f[:, 1] - at[:, 1] * f[:, 0]).sum())
             if f.shape[1] > 2:
                 moment += float(f[:, 2].sum())
     return force, moment
+
+
+def _behind(mesh: Mesh, edges: Ints) -> dict[int, set[int]]:
+    """Cells behind a surface at each of its nodes: also those that only touch it with a corner.
+
+    They are reached around the node from the cells of the surface, not through the surface. Where
+    it ends within the body this leads to its other side; there its own cells count alone.
+    """
+    inside = np.zeros(mesh.n_nodes, bool)
+    inside[mesh.edge_set_nodes(edges)] = True
+    meeting = np.concatenate([inside[cells.nodes].any(axis=1) for cells in mesh.cells])
+    keys, pairs = mesh.cell_edges()
+    near = meeting[pairs[:, 0]]
+    faces = set(map(tuple, edges.tolist()))
+    of_edge: dict[int, list[tuple[int, int]]] = {}
+    for key, (cell, side) in zip(keys[near].tolist(), pairs[near].tolist(), strict=True):
+        of_edge.setdefault(key, []).append((cell, side))
+    found: dict[int, set[int]] = {}
+    beyond: dict[int, set[int]] = {}
+    around: dict[int, list[set[int]]] = {}
+    for members in of_edge.values():
+        cells = {cell for cell, _ in members}
+        own = {member[0] for member in members if member in faces}
+        for node in mesh.edge_nodes(members[:1])[0].tolist():
+            if own:
+                found.setdefault(node, set()).update(own)
+                beyond.setdefault(node, set()).update(cells - own)
+            elif inside[node]:
+                around.setdefault(node, []).append(cells)
+    for node, own in found.items():
+        reached, links = set(own), around.get(node, [])
+        while grown := [cells for cells in links if cells & reached and cells - reached]:
+            reached.update(*grown)
+        if not reached & beyond[node]:
+            found[node] = reached
+    return found
 
 
 def _geometry(model: Model, edges: Ints, x: Floats) -> tuple[float, Floats, Floats]:
