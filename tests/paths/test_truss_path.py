@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
+import corota as ct
 from corota.analysis.procedures.path.controls import Row
 from corota.analysis.procedures.path.tracer import End, PathStalled
 from support.trusses import Truss, exact_load, von_mises
@@ -233,3 +234,23 @@ def test_fixed_increments_are_not_cut(follow):
     system.evaluate = broken
     with pytest.raises(PathStalled, match="DIRECT"):
         follow(system, fixed=True, first=0.2, ends=[apex(-0.22)])
+
+
+ENDS = [{"stop_at_limit": True}, {"displacement": ("corner_1", "y", -1.5)}, {"increments": 40}]
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_a_path_with_a_named_end_passes_the_load_of_the_step(end):
+    """A third of the limit load of two bars, 2 EA (1 - cos a / cos t) sin t at cos^3 t = cos a."""
+    rise, half = 1.5, 10.0
+    model = ct.Model(ct.mesh.line([(-half, 0.0), (0.0, rise), (half, 0.0)], 1))
+    model.truss("all", material=ct.Elastic(E=1000.0), area=1.0)
+    model.fix("start")
+    model.fix("end")
+    limit = 2000.0 * (1.0 - np.cos(np.arctan(rise / half)) ** (2.0 / 3.0)) ** 1.5
+    model.force("corner_1", y=-limit / 3.0)
+    results = ct.solve(model, ct.Static(path=ct.ArcLength(**end)), threads=1)
+    point = next(p for p in results.critical_points if p.kind == "limit")
+    assert point.factor == pytest.approx(3.0, rel=1e-6)
+    if "stop_at_limit" in end:
+        assert results.frames[-1].factor == point.factor

@@ -91,7 +91,8 @@ class ArcLength(Brief, Settings):
                     f"{self.displacement!r}"
                 )
             dof_index(self.displacement[1])
-        if self.factor is None and self.displacement is None and self.increments is None:
+        ends = (self.factor, self.displacement, self.increments, self.stop_at_limit or None)
+        if all(end is None for end in ends):
             self.factor = 1.0
 
 
