@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import corota as ct
@@ -25,9 +26,9 @@ TAIL = "*SOLID SECTION, ELSET=ALL, MATERIAL=STEEL\n1.\n"
 LINE = HEAD.count("\n") + 1
 
 
-def read(cards: str, tmp_path: Path) -> ct.Model:
+def read(cards: str, tmp_path: Path, head: str = "") -> ct.Model:
     path = tmp_path / "job.inp"
-    path.write_text(HEAD + cards + TAIL, encoding="utf-8")
+    path.write_text(head + HEAD + cards + TAIL, encoding="utf-8")
     return ct.read(path)
 
 
@@ -53,6 +54,29 @@ GOOD = [
         },
     ),
 ]
+
+
+CYCLIC = [
+    "*CYCLIC HARDENING\n250., 0.\n280., .06\n300., .2\n",
+    "*CYCLIC HARDENING, PARAMETERS\n250., 40., 9.\n",
+]
+
+
+@pytest.mark.parametrize("cyclic", CYCLIC)
+def test_a_half_cycle_is_that_of_the_program_of_the_deck(cyclic: str, tmp_path: Path) -> None:
+    """Abaqus: stress of the test, 400 at .1. CalculiX: without the growth of the yield surface.
+
+    Abaqus Analysis User's Guide, nonlinear isotropic/kinematic hardening: the back-stress at a
+    point of the test is its stress less the size of the yield surface there.
+    """
+    plastic = "*PLASTIC, HARDENING=COMBINED\n250., 0.\n400., .1\n" + cyclic
+    size = 280.0 + 20.0 * 0.04 / 0.14 if "PARAM" not in cyclic else 290.0 - 40.0 * np.exp(-0.9)
+    for head, stress in (("** DIALECT: abaqus\n", 400.0), ("", 150.0 + size)):
+        law = read(plastic, tmp_path, head).sections[0].material
+        assert isinstance(law, ct.Mises)
+        ((modulus, recall),) = law.back_stresses
+        assert recall == 0.0
+        assert size + 0.1 * modulus == pytest.approx(stress, rel=1e-12)
 
 
 @pytest.mark.parametrize(("cards", "wanted"), GOOD)

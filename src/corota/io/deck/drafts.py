@@ -145,6 +145,8 @@ class PlasticDraft:
     curves: list[CurveDraft] = field(default_factory=list)
     cyclic_card: Card | None = None
     cyclic: list[CurveDraft] | None = None
+    #: Whether rows are stresses of a test, as in Abaqus; in CalculiX the back-stress grows by them.
+    of_test: bool = False
     #: Curves by rate of the plastic strain, where ``RATE=`` is given.
     rated: list[tuple[float, list[tuple[float, float]]]] = field(default_factory=list)
 

@@ -3,9 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from dataclasses import fields
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from corota.errors import InputError
 from corota.io.deck import numerals
@@ -45,6 +48,7 @@ def plastic(deck: Deck, card: Card) -> None:
         card.refuse(f"material {found.name} already has a *PLASTIC")
     draft = found.plastic = found.plastic or PlasticDraft()
     draft.card, draft.kind, draft.ready = card, kind, False
+    draft.of_test = deck.dialect == "abaqus"
     draft.curves = _parameters(card) if data == "PARAMETERS" else _table(card)
     long = next((curve for curve in draft.curves if len(curve.points) > 2), None)
     if kind != "ISOTROPIC" and long is not None:
@@ -217,7 +221,7 @@ def build_mises(
     return [
         (
             curve.temperature,
-            _hill(_mises(p.kind, curve, cyclic.get(curve.temperature), elastic, common), ratios),
+            _hill(_mises(p, curve, cyclic.get(curve.temperature), elastic, common), ratios),
         )
         for curve in p.curves
     ]
@@ -232,7 +236,7 @@ def _hill(law: Mises, ratios: dict[str, Any]) -> Mises:
 
 
 def _mises(
-    kind: str,
+    draft: PlasticDraft,
     curve: CurveDraft,
     cyclic: CurveDraft | None,
     elastic: Callable[[float], tuple[float, float]],
@@ -242,11 +246,13 @@ def _mises(
     e, nu = elastic(curve.temperature)
     # The check of the curve names the row.
     plain = Mises(e, nu, yield_curve=curve.points, rows=curve.rows, **common)
-    if kind == "ISOTROPIC":
+    if draft.kind == "ISOTROPIC":
         return plain
     back = list(curve.back)
     if len(curve.points) == 2:
         (s0, _), (s1, p1) = curve.points
+        if cyclic is not None and draft.of_test:
+            s1 -= _growth(cyclic, p1)
         if s1 > s0:
             back.append(((s1 - s0) / p1, 0.0))
     points, rows = [curve.points[0]], [curve.rows[0]]
@@ -262,3 +268,12 @@ def _mises(
             first, law = points[0][0], Voce(*cyclic.voce)
             return Mises(e, nu, yield_stress=first, isotropic=law, chaboche=back, **common)
     return Mises(e, nu, yield_curve=points, chaboche=back, rows=rows, **common)
+
+
+def _growth(cyclic: CurveDraft, strain: float) -> float:
+    """Growth of the yield surface up to a plastic strain."""
+    if cyclic.voce is not None:
+        q, b = cyclic.voce
+        return q * (1.0 - math.exp(-b * strain))
+    stresses, strains = np.array(cyclic.points).T
+    return float(np.interp(strain, strains, stresses) - stresses[0])
