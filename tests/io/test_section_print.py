@@ -141,3 +141,34 @@ def test_elements_that_touch_a_surface_with_a_corner_belong_to_it(
         found = numbers(block, "total surface force")
         assert found[:2] == pytest.approx([0.0, force], abs=1e-4)
         assert found[5] == pytest.approx(3.0 * force, abs=1e-3)
+
+
+@pytest.mark.parametrize("element", ["T3", "Q4I", "Q8R"])
+@pytest.mark.parametrize("nlgeom", [False, True])
+def test_area_and_center_of_a_ring_are_those_of_its_circles(
+    element: str, nlgeom: bool, tmp_path: Path
+) -> None:
+    """An annulus 5 to 8, three edges, that swells by .04, in a linear step as undeformed."""
+    kinds = {"T3": "tri3", "Q8R": "quad8"}
+    mesh = ct.mesh.rectangle(3.0, 1.0, 3, 1, cell=kinds.get(element, "quad4"))
+    mesh.points[:, 0] += 5.0
+    model = ct.Model(mesh)
+    model.section(
+        "all",
+        element=element,
+        material=ct.Elastic(E=1000.0, nu=0.0, expansion=1.0),
+        plane="axisymmetric",
+        local_strain="linear",
+    )
+    model.fix("bottom", x=None)
+    model.temperature(0.04)
+    step = ct.Static(nlgeom=nlgeom)
+    step.outputs = [ct.Output("section print", ("SOF",), where="top")]
+    path = tmp_path / "job.dat"
+    ct.solve(model, step, threads=1).write(path)
+    text = path.read_text()
+    a, b = (5.2, 8.32) if nlgeom else (5.0, 8.0)
+    area = np.pi * (b**2 - a**2)
+    center = 2.0 / 3.0 * (b**3 - a**3) / (b**2 - a**2)
+    assert numbers(text, "area, normal force")[0] == pytest.approx(area, rel=1e-5)
+    assert numbers(text, "center of gravity and mean")[0] == pytest.approx(center, rel=1e-5)

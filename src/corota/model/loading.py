@@ -144,7 +144,7 @@ class Loading:
         where : str, sequence of str or array_like of int
             Edge or node set, a list of them (united), node indices, or a mask of nodes.
         x, y : float
-            Force [force].
+            Force [force]: along the local axes of nodes that have them, on edges always global.
         moment : float
             Drilling moment [force*length].
         total : bool

@@ -265,10 +265,15 @@ class Section(Brief):
         return np.asarray(self.nodal_thickness[nodes])
 
 
-def thickness_at(mesh: Mesh, sections: Iterable[Section], cells: Ints, nodes: Ints) -> Floats:
-    """Thickness of nodes (n, k) [length] from the sections of cells (n,); 1 without one."""
-    found = np.ones(nodes.shape)
+def thickness_at(
+    mesh: Mesh, sections: Iterable[Section], cells: Ints, nodes: Ints, x: Floats | None = None
+) -> Floats:
+    """Thickness of nodes (n, k) [length] from the sections of cells (n,); 1 without one.
+
+    Circumferences are those at the positions `x` (n_nodes, 2), by default the undeformed ones.
+    """
+    found, points = np.ones(nodes.shape), mesh.points if x is None else x
     for section in sections:
         mine = np.isin(cells, cells_of(mesh, section.cells))
-        found[mine] = section.thickness_at(nodes[mine], mesh.points)
+        found[mine] = section.thickness_at(nodes[mine], points)
     return found

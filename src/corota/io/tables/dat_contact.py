@@ -121,14 +121,14 @@ def _closed_part(model: Model, pair: ContactPair, frame: Frame) -> tuple[float, 
         return _closed_nodes(model, pair, frame, x)
     ends = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(edges)])
     chord = x[ends[:, 1]] - x[ends[:, 0]]
-    own = thickness_at(model.mesh, model.sections, edges[:, 0], ends).mean(axis=1)
+    own = thickness_at(model.mesh, model.sections, edges[:, 0], ends, x).mean(axis=1)
     master = pair.master
     if not isinstance(master, RigidCurve):
         edges = edges_or_nodes(model.mesh, master)[0]
         if model.mesh.are_lines(edges[:, 0]).all():
             return _closed_nodes(model, pair, frame, x)
         facing = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(edges)])
-        other = thickness_at(model.mesh, model.sections, edges[:, 0], facing).mean(axis=1)
+        other = thickness_at(model.mesh, model.sections, edges[:, 0], facing, x).mean(axis=1)
         own = joint_thickness(model.mesh.points, ends, own, facing, other)
     share = 0.5 * own
     closed = (frame.C[ends, 4] > 0.0) * share[:, None]

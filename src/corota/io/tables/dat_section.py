@@ -127,8 +127,9 @@ def _geometry(model: Model, edges: Ints, x: Floats) -> tuple[float, Floats, Floa
     """Area of a surface, its center and its mean outward normal, in the current state."""
     ends = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(edges)])
     chord = x[ends[:, 1]] - x[ends[:, 0]]
-    thickness = thickness_at(model.mesh, model.sections, edges[:, 0], ends)
-    weight = 0.5 * thickness * np.hypot(*chord.T)[:, None]
+    thickness = thickness_at(model.mesh, model.sections, edges[:, 0], ends, x)
+    # Those of the ends where the thickness is linear between them.
+    weight = np.hypot(*chord.T)[:, None] * (thickness + thickness.sum(axis=1, keepdims=True)) / 6.0
     area = float(weight.sum())
     center = np.einsum("ij,ijk->k", weight, x[ends]) / area
     normal = np.array([chord[:, 1], -chord[:, 0]]) @ thickness.mean(axis=1)
