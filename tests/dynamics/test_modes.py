@@ -95,3 +95,28 @@ def test_harmonic_response_peaks_at_the_frequency_with_its_damping():
     assert f[size.argmax()] == pytest.approx(first, rel=1e-3)
     # One mode: amplification 1 / (2 zeta) at resonance over the static deflection.
     assert size.max() / size[0] == pytest.approx(25.0, rel=2e-3)
+
+
+def small_block(held: str) -> ct.Model:
+    """A block of two elements on the ground, held by supports or by friction."""
+    model = ct.Model(ct.mesh.rectangle(2.0, 1.0, 2, 1))
+    model.section("all", element="Q4", material=ct.Elastic(1000.0, 0.3, rho=1.0))
+    model.pressure("top", 1.0)
+    if held == "supports":
+        model.fix("bottom")
+    else:
+        floor = ct.RigidCurve.line((-5.0, 0.0), (5.0, 0.0))
+        model.contact("bottom", floor, friction=5.0, method=held)  # type: ignore[arg-type]
+    return model
+
+
+@pytest.mark.parametrize("held", ["mortar", "node_to_segment"])
+def test_closed_contact_has_no_modes_of_its_own(held: str) -> None:
+    """More modes are asked for than there are: those of the same block on supports, no others."""
+    wanted, found = (
+        ct.solve(small_block(by), [ct.Static(nlgeom=False), ct.Frequency(modes=40)], threads=1)
+        for by in ("supports", held)
+    )
+    frequencies = wanted.modes[0].factors
+    assert len(frequencies) == 6
+    assert found.modes[0].factors == pytest.approx(frequencies, rel=1e-6)

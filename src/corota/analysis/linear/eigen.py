@@ -34,6 +34,9 @@ DENSE = 150
 SHIFT = 1e-9
 #: Eigenvalues of the inverse below this share of the largest belong to unknowns without mass.
 MASSLESS = 1e-13
+#: Square of a circular frequency, over the largest ratio of stiffness to mass, that no mesh has:
+#: closed constraints of contact have a compliance of 1e-10.
+RIGID = 1e5
 #: Additional modes that are searched for an instability.
 BESIDE = 6
 
@@ -63,6 +66,13 @@ def _largest_ratio(k: Sparse, m: Sparse) -> float:
     return float((stiff[moving] / heavy[moving]).max(initial=0.0))
 
 
+def _rigid(lin: LinearMotion) -> float:
+    """Square of a circular frequency beyond which modes are those of constraints that give way."""
+    if not lin.multiplier[lin.active].any():
+        return np.inf
+    return RIGID * _largest_ratio(lin.sub(lin.stiffness), lin.sub(lin.mass))
+
+
 def symmetric_modes(lin: LinearMotion, count: int) -> tuple[Floats, Floats]:
     """Lowest squares of the circular frequency; negative ones, of unstable states, first.
 
@@ -76,7 +86,7 @@ def symmetric_modes(lin: LinearMotion, count: int) -> tuple[Floats, Floats]:
     m = lin.sub(lin.mass)
     n = len(lin.active)
     if n <= DENSE or 4 * count > n:
-        return _dense_symmetric(factor, m, shift, count)
+        return _dense_symmetric(factor, m, shift, count, _rigid(lin))
     shape = (n, n)
     weigh = LinearOperator(shape, matvec=lambda x: m @ x.ravel(), dtype=float)
     invert = LinearOperator(shape, matvec=lambda x: factor.solve(x.ravel()), dtype=float)
@@ -97,7 +107,9 @@ def symmetric_modes(lin: LinearMotion, count: int) -> tuple[Floats, Floats]:
     return values[order], shapes[:, order]
 
 
-def _dense_symmetric(factor: Factor, m: Sparse, shift: float, count: int) -> tuple[Floats, Floats]:
+def _dense_symmetric(
+    factor: Factor, m: Sparse, shift: float, count: int, rigid: float
+) -> tuple[Floats, Floats]:
     """Small systems, or most of a spectrum: by the flexibility, which may be indefinite."""
     n = m.shape[0]
     weights, axes = np.linalg.eigh(m.toarray())
@@ -107,6 +119,7 @@ def _dense_symmetric(factor: Factor, m: Sparse, shift: float, count: int) -> tup
     flexible = root.T @ moved
     theta, y = eigh(0.5 * (flexible + flexible.T))
     real = np.abs(theta) > MASSLESS * np.abs(theta).max(initial=0.0)
+    real &= (theta < 0.0) | (theta * rigid > 1.0)
     theta, y = theta[real], y[:, real]
     values = 1.0 / theta - shift
     order = np.argsort(values)[:count]
@@ -133,7 +146,7 @@ def unsymmetric_modes(lin: LinearMotion, count: int) -> tuple[Complex, Complex]:
     theta, x = _nearest(apply, n, 2 * count + BESIDE)
     # A real matrix: complex squares come in pairs, each of which is one s.
     squares = 1.0 / theta - shift
-    keep = squares.imag >= 0.0
+    keep = (squares.imag >= 0.0) & (np.abs(squares) < _rigid(lin))
     squares, x = squares[keep], x[:, keep]
     # Real squares that differ from a pair by rounding count as real.
     squares = np.where(np.abs(squares.imag) <= 1e-7 * np.abs(squares), squares.real + 0j, squares)
