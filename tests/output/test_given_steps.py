@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import corota as ct
@@ -33,7 +35,8 @@ def test_files_do_not_depend_on_where_the_steps_come_from(tmp_path, suffix, nlge
     for given in (False, True):
         path = tmp_path / f"{given}.{suffix}"
         bent(given=given, nlgeom=nlgeom).write(path)
-        texts.append(path.read_bytes())
+        # The clock may go on between the two.
+        texts.append(re.sub(rb"1U(DATE|TIME).*", b"", path.read_bytes()))
     assert texts[0], "nothing was written"
     assert texts[0] == texts[1]
 
