@@ -35,7 +35,6 @@ from corota.analysis.terms.damping import Damping
 from corota.analysis.terms.inertia import Inertia, MotionState
 from corota.analysis.terms.redistribution import massless_nodes
 from corota.analysis.terms.viscous import ViscousElements
-from corota.errors import SingularError
 from corota.model import elements
 from corota.model.schemes import SCHEMES
 
@@ -202,12 +201,9 @@ class DynamicStepper(NewtonStepper):
         target = failed.target
         guess = self.now.u
         prescribed = system.conditions.supports.at(target, guess)
-        try:
-            outcome, contact = relax(
-                system, guess, prescribed, target, self.settings, self.report, self.motion
-            )
-        except SingularError:
-            return None
+        outcome, contact = relax(
+            system, guess, prescribed, target, self.settings, self.report, self.motion
+        )
         if outcome.converged:
             return Attempt(target, outcome, contact)
         failed.reason += f"; {outcome.reason}"

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.increment_loop import Attempt
-from corota.errors import SingularError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,10 +40,7 @@ def by_relaxation(stepper: StaticStepper) -> Attempt | str:
     for fraction in tries:
         size = fraction * control.step.period
         target = min([control.time + size, *(s for s in control.stops if s > control.time)])
-        try:
-            outcome, contact = stepper.relax(target, loaded)
-        except SingularError:
-            continue
+        outcome, contact = stepper.relax(target, loaded)
         # Unconstrained bodies that did not move are not in a first equilibrium.
         untouched = outcome.converged and first and not contact.presses
         if untouched or not outcome.converged:
