@@ -54,6 +54,8 @@ CUT = 0.4
 UNBALANCED = 1e-6
 #: Least part of a direction in the mean of two, of which the sharpest kink has none.
 MIN_BISECTOR = 0.02
+#: Share of an increment that its end may lie beside the chord.
+MAX_CHORD_OFFSET = 0.5
 #: Share of an increment with a kink that may lie beside the directions before and behind ...
 MAX_KINK_OFFSET = 0.3
 #: ... and attempts after which such a turn is taken as it is.
@@ -564,6 +566,10 @@ class PathTracer(ABC):
         done = self._solve(Point(u, factor, None), end.control(self.base), share)
         if done.point is None:
             return None
+        whole = self.metric.size(point.u - self.base.u, point.factor - self.base.factor)
+        aside = self.metric.size(done.point.u - u, done.point.factor - factor)
+        if aside > MAX_CHORD_OFFSET * whole:
+            return None  # behind a kink the path passes the same end once more
         found, _ = self._check_growth(done.point, self.size)
         return None if found is None else (found.point, found.tangent)
 

@@ -24,7 +24,15 @@ from corota._core import CLOSED, OPEN, SLIPPING
 from corota.analysis.path_system import NOT_CONSERVATIVE, Metric, Point, SmoothPath, Tangent
 from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.contact.equations import ContactEquations
-from corota.analysis.terms.contact.gaps import PATIENCE, SAME, WAITED, RightHandSides, covered
+from corota.analysis.terms.contact.gaps import (
+    PATIENCE,
+    SAME,
+    SMALL,
+    WAITED,
+    RightHandSides,
+    covered,
+)
+from corota.analysis.terms.contact.pivoting import pivoted
 from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:
@@ -132,10 +140,27 @@ class ContactPathEquations(ContactEquations):
 
         The pivots are those of the bodies: one for each closed constraint is taken off.
         """
-        states = self._settled(at)
+        begins = self._fresh and not self.corrections and not at.contact_state.settled
+        found = self._first_states(at, force, move) if begins else None
+        states, slip_directions = found or (self._settled(at), None)
         if self._fresh:
             self._base = states
-        return self.rate_with(at, states, force, move)
+        return self.rate_with(at, states, force, move, slip_directions)
+
+    def _first_states(
+        self, at: Evaluation, force: Floats, move: Floats
+    ) -> tuple[States, dict[tuple[int, int], float]] | None:
+        """States with a small first load, and signs of slip, from the whole linearized problem.
+
+        What touches without pressure may open, stick or slip, and so may what is at its bound.
+        """
+        n = self.n
+        load = RightHandSides(SMALL * force[:n, None], SMALL * move[:n, None], np.ones(1))
+        found = pivoted(self, at, load)
+        if found is None:
+            return None
+        _, states, signs = found
+        return states, {(k, i): sign for k, own in enumerate(signs) for i, sign in enumerate(own)}
 
     def rate_with(
         self,
