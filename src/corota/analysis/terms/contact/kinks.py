@@ -18,7 +18,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.failure import GiveUp
-from corota.analysis.terms.contact.gaps import EXCESS, FAR, HALVINGS, WAITED, Kink, RightHandSides
+from corota.analysis.terms.contact.gaps import (
+    EXCESS,
+    FAR,
+    HALVINGS,
+    SAME,
+    SMALL,
+    WAITED,
+    Kink,
+    RightHandSides,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -125,21 +134,27 @@ def near_side(term: ContactTerm, point: StatePoint, kink: Kink) -> ContactState 
     The kink takes the new normal, jump and distance.
     """
     u, sides = point.u, Sides(term, point.multipliers, point.time)
+    # Nearer jumps come first. In a width of rounding either side may do so.
+    least = SMALL / SAME * sides.noise
+    for width in (*(max(x * abs(kink.distance), least) for x in (JUMP, FAR)), kink.width):
+        if width > kink.width:
+            continue
 
-    def place(t: float) -> Floats:
-        return u + (2.0 * t - 1.0) * kink.width * kink.move
+        def place(t: float, w: float = width) -> Floats:
+            return u + (2.0 * t - 1.0) * w * kink.move
 
-    at = sides.jump(place)
-    new = None if at is None else _kink(sides, place, at)
-    if at is None or new is None or float(new.jump @ kink.jump) <= 0.0:
-        return None
-    kink.far = sides.state(place(at[1])).terms
-    state = sides.state(place(at[0]))
-    kink.distance = (2.0 * at[0] - 1.0) * kink.width * float(new.normal @ kink.move)
-    kink.normal, kink.move, kink.jump = new.normal, new.move, new.jump
-    kink.follow(u)
-    state.force = state.force + kink.share * kink.jump
-    return state
+        at = sides.jump(place)
+        new = None if at is None else _kink(sides, place, at)
+        if at is None or new is None or float(new.jump @ kink.jump) <= 0.0:
+            continue
+        kink.far = sides.state(place(at[1])).terms
+        state = sides.state(place(at[0]))
+        kink.distance = (2.0 * at[0] - 1.0) * width * float(new.normal @ kink.move)
+        kink.normal, kink.move, kink.jump = new.normal, new.move, new.jump
+        kink.follow(u)
+        state.force = state.force + kink.share * kink.jump
+        return state
+    return None
 
 
 def both_sides(kink: Kink, near: list[Terms]) -> list[Terms]:
