@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from benchmarks.corpora.contact_case_models import seal
 from benchmarks.corpora.contact_problems import problem
 from corota.results.observer import BaseObserver
 
@@ -92,3 +93,17 @@ def test_increments_go_on_from_an_equilibrium_at_a_kink(number):
     results = ct.solve(given.model, given.steps, threads=1)
     assert results.times[-1] == pytest.approx(sum(step.period for step in given.steps))
     assert max(f.scalars["residual"] for f in results.frames[1:]) < 1e-9
+
+
+def test_walls_of_a_seal_meet_through_kink_after_kink() -> None:
+    """Kinks lie closer than one search radius: the nearer one comes first.
+
+    The force of the rib is that of mortar contact. In one radius the run stopped at .963.
+    """
+    forces = []
+    for method in ("mortar", "node_to_segment"):
+        model, steps = seal("Q8R", 60, method)
+        results = ct.solve(model, steps, threads=1)
+        assert results.times[-1] == pytest.approx(1.0)
+        forces.append(abs(results.frames[-1].scalars["rib: force y"]))
+    assert forces[1] == pytest.approx(forces[0], rel=0.01)

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 
 #: Share that tells a jump from a gradual change: of a difference of contact forces, which halves
 #: with the way if it is gradual, and of a correction, which the next one takes back at a jump.
+#: First search radius of a kink, in lengths that the last correction was to go.
 JUMP = 0.2
 
 
