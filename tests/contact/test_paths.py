@@ -229,29 +229,30 @@ def test_load_control_names_the_limit_point_or_goes_on_to_the_stop():
     assert [p.negative for p in found.critical_points] == [(0, 1), (1, 0)]
 
 
-@pytest.mark.parametrize("stiffness", [1e5, 1e9])
+@pytest.mark.parametrize(("side", "stiffness"), [(1.0, 1e5), (1.0, 1e9), (-1.0, 1e5)])
 @pytest.mark.parametrize("preload", [0.0, 0.06])
 @pytest.mark.parametrize("friction", [0.0, 0.1, 0.3])
 def test_a_strut_on_a_rough_floor_slides_from_load_zero(
-    friction: float, preload: float, stiffness: float
+    friction: float, preload: float, side: float, stiffness: float
 ) -> None:
     """``P (x / y - mu) = k (x - x0)``: half a frame, its foot held by a spring and friction.
 
     All that touches slides with the first load: what sticks would have another path. Where it is
     flat the foot lifts, and the top comes back to where the path ends: it ends before.
     """
-    nodes = np.array([[0.0, 1.5], [10.0, 0.0], [30.0, 0.0]])
+    nodes = np.array([[0.0, 1.5], [side * 10.0, 0.0], [side * 30.0, 0.0]])
     model = ct.Model(Mesh(nodes, [Cells("line2", np.array([[0, 1], [1, 2]]), np.array([1, 2]))]))
     model.truss([0], material=ct.Elastic(E=stiffness, nu=0.0), area=1.0)
     model.spring([1], 10.0)
     model.fix([0], x=0.0, y=None)
     model.fix([2])
-    model.contact([1], ct.RigidCurve.line((-1.0, 0.0), (50.0, 0.0)), friction=friction)
+    model.contact([1], ct.RigidCurve.line((-50.0, 0.0), (50.0, 0.0)), friction=friction)
     steps = [ct.Static(loads=[NodalForce([0], 1, -preload)])] if preload else []
     path = ct.ArcLength(displacement=([0], "y", -1.2))
     steps.append(ct.Static(path=path, loads=[NodalForce([0], 1, -1.0)]))
     found = ct.solve(model, steps, threads=1)
-    x, y = 10.0 + found.history("U1", at=[1]).values, 1.5 + found.history("U2", at=[0]).values
+    x = 10.0 + side * found.history("U1", at=[1]).values
+    y = 1.5 + found.history("U2", at=[0]).values
     load = -np.array([frame.F[0, 1] for frame in found.frames])
     assert load * (x / y - friction) == pytest.approx(10.0 * (x - 10.0), abs=1e-7)
     assert y[-1] == pytest.approx(0.3)

@@ -22,7 +22,6 @@ from corota.analysis.terms.contact.gaps import (
     EXCESS,
     FAR,
     HALVINGS,
-    SAME,
     SMALL,
     WAITED,
     Kink,
@@ -136,7 +135,7 @@ def near_side(term: ContactTerm, point: StatePoint, kink: Kink) -> ContactState 
     """
     u, sides = point.u, Sides(term, point.multipliers, point.time)
     # Nearer jumps come first. In a width of rounding either side may do so.
-    least = SMALL / SAME * sides.noise
+    least = SMALL * max(pair.edge for pair in term.pairs)
     for width in (*(max(x * abs(kink.distance), least) for x in (JUMP, FAR)), kink.width):
         if width > kink.width:
             continue
