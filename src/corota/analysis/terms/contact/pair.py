@@ -171,10 +171,6 @@ class Pair:
         self.share = 1.0  # of those in the equation of the increment
         #: What of it the trapezoidal rule misses, of tractions that grew before the surfaces slid.
         self.beyond_trapezoid = 0.0
-        #: A rigid curve as straight pieces in the reference configuration, made when needed.
-        self.chords: Floats | None = None
-        #: Least extent of a body that the other side goes round, computed when needed.
-        self.width_across: float | None = None
         self.edge = float(self.slave.length.max())
         self.stiffness = np.ones(self.n)  # pressure per gap for the choice of the set
         self.size = system.length
@@ -688,10 +684,6 @@ class Pair:
         first, last, ends = self.other_side(old, new)
         if not len(first):
             return np.zeros(0, np.int64)
-        if self.width_across is None:
-            itself = getattr(self.item, "itself", False)
-            pieces = self.other_side(self.reference, self.reference)[0]
-            self.width_across = math.inf if itself else _width(pieces)
         least = min(self.reach, self.width_across)
         nodes, state = self.nodes, None
         through = np.arange(len(nodes))
@@ -726,10 +718,8 @@ class Pair:
 
     def other_side(self, old: Floats, new: Floats) -> tuple[Floats, Floats, Ints]:
         """Straight pieces of the other side at both ends: (m, 2, 2) twice, and their nodes."""
-        master = getattr(self.item, "master", None)
+        master = self.item.master
         if isinstance(master, RigidCurve):
-            if self.chords is None:
-                self.chords = chords(master)
             first, last = (curve_at(master, self.chords, self.reference, x) for x in (old, new))
             return first, last, np.full((len(first), 2), -1, np.int64)
         other = self.slave if self.master is None else self.master
@@ -737,6 +727,25 @@ class Pair:
         if other.two_sided:
             nodes = np.concatenate([nodes, nodes[:, ::-1]])
         return old[nodes][:, :, :2], new[nodes][:, :, :2], nodes
+
+    @cached_property
+    def chords(self) -> Floats:
+        """A rigid curve as straight pieces in the reference configuration, shape (m, 2, 2)."""
+        assert isinstance(self.item.master, RigidCurve)
+        return chords(self.item.master)
+
+    @cached_property
+    def width_across(self) -> float:
+        """Least extent of a body that the other side goes round.
+
+        Infinite where its surface ends, goes round a hole, or meets itself.
+        """
+        points = self.other_side(self.reference, self.reference)[0].reshape(-1, 2)
+        (x, y), size = points.T, np.ptp(points, axis=0)
+        closed = not alone(points, SAME * float(size.max())).any()
+        twice = float((x[::2] * y[1::2] - x[1::2] * y[::2]).sum())
+        body = closed and twice > SAME * size.max() ** 2 and not getattr(self.item, "itself", False)
+        return float(size.min()) if body else math.inf
 
     def outside(self, term: Any, k: int, moves: bool) -> Floats:
         """Distance from the other side from which each node starts outside, shape (n,).
@@ -834,15 +843,6 @@ def _turn(old: Floats, new: Floats) -> float:
     before, after = old - old.mean(axis=0), new - new.mean(axis=0)
     across = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     return math.atan2(float(across.sum()), float((before * after).sum()))
-
-
-def _width(pieces: Floats) -> float:
-    """Least extent of a body that pieces go round; infinite where they end or go round a hole."""
-    points = pieces.reshape(-1, 2)
-    (x, y), size = points.T, np.ptp(points, axis=0)
-    closed = not alone(points, SAME * float(size.max())).any()
-    twice = float((x[::2] * y[1::2] - x[1::2] * y[::2]).sum())
-    return float(size.min()) if closed and twice > SAME * size.max() ** 2 else math.inf
 
 
 __all__ = ["Pair", "Terms"]

@@ -17,6 +17,7 @@ import math
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import IntEnum
+from itertools import permutations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,7 +27,7 @@ from corota._core import CORNER
 from corota.analysis.terms.contact.gaps import AT_ONCE, SAME
 from corota.arrays import distinct
 from corota.errors import ModelError
-from corota.mesh.kinds import EDGES
+from corota.mesh.kinds import SIDES
 from corota.mesh.parts import nodes_of_cells, part_of_cells, part_of_nodes, parts_without
 from corota.model import elements
 from corota.model.constraints import Coupling
@@ -147,53 +148,14 @@ def carrier(system: NumberedModel, side: Surface | None) -> int | None:
     return None
 
 
-def line_surface(system: NumberedModel, name: str, edges: Ints, item: ContactPair | Tie) -> Surface:
-    """Lines of a surface, with the distance to their surfaces: half the height of the section.
-
-    Raises
-    ------
-    ModelError
-        Naming the element that has no section.
-    """
-    mesh = system.model.mesh
-    n = len(edges)
-    nodes = np.full((n, 3), -1, np.int64)
-    nodes[:, :2] = np.array(mesh.edge_nodes(edges))
-    bulge, width, half = np.zeros(n), np.zeros(n), np.full(n, -1.0)
-    for block in system.blocks:
-        here = np.isin(edges[:, 0], block.cells)
-        if not here.any():
-            continue
-        section = block.section
-        element = elements.find(section.element)
-        if not section.profile[0] or element.name not in ("BEAM", "TRUSS"):
-            continue
-        # A beam's chord bulges by the difference of its end rotations, as a drilling edge does.
-        bulge[here] = element.alpha_b
-        half[here] = 0.5 * section.line_height
-        width[here] = section.profile[0] / (section.line_height or np.sqrt(section.profile[0]))
-    if (half < 0.0).any():
-        cell = mesh.cell_labels[int(edges[int(np.argmin(half)), 0])]
-        raise _refused(
-            item,
-            f"element {cell} of surface {name!r} has no section of a "
-            "beam or truss; springs have no surface",
-        )
-    length = np.hypot(*(mesh.points[nodes[:, 1]] - mesh.points[nodes[:, 0]]).T)
-    return Surface(name, edges, nodes, bulge, width, length, half)
-
-
 def _spacing(system: NumberedModel) -> Floats:
     """Distance to the nearest node of the same cell, shape (n_nodes,)."""
     mesh = system.model.mesh
     out = np.full(mesh.n_nodes, np.inf)
     for block in mesh.cells:
         x = mesh.points[block.nodes]
-        for a in range(block.nodes.shape[1]):
-            for b in range(a):
-                apart = np.hypot(*(x[:, a] - x[:, b]).T)
-                np.minimum.at(out, block.nodes[:, a], apart)
-                np.minimum.at(out, block.nodes[:, b], apart)
+        for a, b in permutations(range(block.nodes.shape[1]), 2):
+            np.minimum.at(out, block.nodes[:, a], np.hypot(*(x[:, a] - x[:, b]).T))
     out[~np.isfinite(out) | (out == 0.0)] = system.length
     return out
 
@@ -207,13 +169,12 @@ def line_core(
 ) -> Core:
     """See :func:`make_core`, for lines and single nodes."""
     tied, curve = isinstance(item, Tie), item.master
-    sides = [slave] if master is None else [slave, master]
-    rigid, other = None, (np.zeros((0, 3), np.int64), np.zeros(0), np.zeros(0))
-    none = other
     if getattr(item, "smooth", False):
         raise _refused(
             item, "a pair with a line or with single nodes is not smoothed; leave smooth out"
         )
+    rigid, sides = None, [slave] if master is None else [slave, master]
+    none = np.zeros((0, 3), np.int64), np.zeros(0), np.zeros(0)
     if isinstance(curve, RigidCurve):
         rigid = (curve.backward, *_reference(curve), curve.turns)
     elif master is None:
@@ -230,20 +191,19 @@ def line_core(
         )
     else:
         _check_shared(system, item, slave, master)
-        other = (master.nodes, master.bulge, master.half)
     bodies = [] if tied else [side for side in sides if not of_lines(side)]
     least = np.inf if tied else reach
     depth = min((float(_thickness(system, body).max()) for body in bodies), default=least)
     slave.pointwise = True
     reach += max(0.0, *(float(side.half.max(initial=0.0)) for side in sides))
-    points = slave.node_list if tied or slave.points is not None else np.zeros(0, np.int64)
+    nodes_alone = tied or slave.points is not None
     with _refusing(item):
         core = _core.line_contact(
             _start(system.model.mesh),
-            none if len(points) else (slave.nodes, slave.bulge, slave.half),
-            slave.thickness if not len(points) else np.zeros(0),
-            points,
-            other,
+            none if nodes_alone else (slave.nodes, slave.bulge, slave.half),
+            none[1] if nodes_alone else slave.thickness,
+            slave.node_list if nodes_alone else np.zeros(0, np.int64),
+            none if master is None else (master.nodes, master.bulge, master.half),
             rigid,
             method="point_tie" if tied else "line",
             reach=reach,
@@ -285,28 +245,21 @@ def smoothed(points: Floats, master: Surface) -> tuple[Ints, Floats, Ints]:
     after = {a: b for own in of_edge for a, b in own}
     before = {b: a for a, b in after.items()}
     round_ = set(blunt_turns(points, master))
-    nodes: list[tuple[int, int, int]] = []
-    bulge: list[float] = []
-    shapes: list[Shape] = []
-
-    def put(piece: tuple[int, int, int], shape: Shape, factor: float = 0.0) -> None:
-        nodes.append(piece)
-        bulge.append(factor)
-        shapes.append(shape)
-
+    pieces: list[tuple[list[int], float, Shape]] = []
     for row, factor, own in zip(master.nodes.tolist(), master.bulge, of_edge, strict=True):
         if not round_.intersection(row):
-            put(tuple(row), Shape.ELEMENT, float(factor))
+            pieces.append((row, float(factor), Shape.ELEMENT))
             continue
         for a, b in own:
             if a not in round_ and b not in round_:
-                put((a, b, -1), Shape.ELEMENT)
+                pieces.append(([a, b, -1], 0.0, Shape.ELEMENT))
             elif a not in round_:
-                put((a, b, -1), Shape.FIRST_HALF)
+                pieces.append(([a, b, -1], 0.0, Shape.FIRST_HALF))
             elif b not in round_:
-                put((a, b, -1), Shape.SECOND_HALF)
+                pieces.append(([a, b, -1], 0.0, Shape.SECOND_HALF))
             if b in round_:
-                put((before[b], after[b], b), Shape.SPLINE)
+                pieces.append(([before[b], after[b], b], 0.0, Shape.SPLINE))
+    nodes, bulge, shapes = zip(*pieces, strict=True)
     return np.array(nodes, np.int64), np.array(bulge), np.array(shapes, np.int64)
 
 
@@ -364,16 +317,14 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
         raise _refused(item, f"surface {name!r} is empty")
     edges = edges[np.sort(np.unique(edges, axis=0, return_index=True)[1])]
     lines = mesh.are_lines(edges[:, 0])
-    if lines.all():
-        return line_surface(system, name, edges, item)
-    if lines.any():
+    if lines.any() and not lines.all():
         cell = mesh.cell_labels[int(edges[int(np.argmax(lines)), 0])]
         raise _refused(
             item,
             f"surface {name!r} has edges of bodies and the line "
             f"{cell}; make two surfaces, and a pair of each",
         )
-    inner = ~_among(edges, mesh.boundary_edges())
+    inner = ~(lines | _among(edges, mesh.boundary_edges()))
     if inner.any():
         cell = int(edges[int(np.argmax(inner)), 0])
         raise _refused(
@@ -384,30 +335,36 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
         )
     n = len(edges)
     nodes = np.full((n, 3), -1, np.int64)
-    bulge, thickness = np.zeros(n), np.zeros(n)
+    bulge, thickness, half = np.zeros(n), np.zeros(n), np.full(n, -1.0)
     found = np.zeros(n, bool)
     for block in system.blocks:
         order = np.argsort(block.cells)
         at = np.minimum(np.searchsorted(block.cells[order], edges[:, 0]), len(order) - 1)
         mine = block.cells[order][at] == edges[:, 0]
-        element = elements.find(block.section.element)
-        for side, local in enumerate(EDGES[element.cell]):
+        section, element = block.section, elements.find(block.section.element)
+        area, height = section.profile[0], section.line_height
+        if lines.any() and not (area and element.name in ("BEAM", "TRUSS")):
+            continue
+        for side, local in enumerate(SIDES[element.cell]):
             here = np.flatnonzero(mine & (edges[:, 1] == side))
             rows = order[at[here]]
             nodes[here, : len(local)] = block.nodes[rows][:, list(local)]
+            # A beam's chord bulges by the difference of its end rotations, as a drilling edge does.
             bulge[here] = block.shares(rows, side)
-            if not block.section.axisymmetric:  # 0 stands for the circumference
-                depth = block.section.thickness_at(nodes[here, :2], mesh.points)
+            if lines.any():
+                half[here] = 0.5 * height
+                thickness[here] = area / (height or np.sqrt(area))
+            elif not section.axisymmetric:  # 0 stands for the circumference
+                depth = section.thickness_at(nodes[here, :2], mesh.points)
                 thickness[here] = depth.mean(axis=1)
             found[here] = True
     if not found.all():
         cell = int(edges[int(np.argmin(found)), 0])
-        raise _refused(
-            item,
-            f"element {mesh.cell_labels[cell]} of surface {name!r} has no section, or no such edge",
-        )
+        of_lines = "no section of a beam or truss; springs have no surface"
+        why = of_lines if lines.any() else "no section, or no such edge"
+        raise _refused(item, f"element {mesh.cell_labels[cell]} of surface {name!r} has {why}")
     length = np.hypot(*(mesh.points[nodes[:, 1]] - mesh.points[nodes[:, 0]]).T)
-    return Surface(name, edges, nodes, bulge, thickness, length, np.full(n, -1.0))
+    return Surface(name, edges, nodes, bulge, thickness, length, half)
 
 
 def _among(edges: Ints, others: Ints) -> Bools:
