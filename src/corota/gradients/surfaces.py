@@ -187,9 +187,7 @@ def _gradients(pair: Any, terms: Any) -> Iterator[tuple[int, Floats]]:
 
 def evaluate(system: System, u: Floats, multipliers: Floats, time: float) -> ContactState:
     """Gaps, and forces of multipliers, without the tangent that only the choice of states needs."""
-    term = contact_of(system)
-    term._stiff = True
-    return term.evaluate(u, multipliers, time, np.empty(0))
+    return contact_of(system).evaluate(u, multipliers, time, np.empty(0))
 
 
 def add_forces(
@@ -242,7 +240,7 @@ def solve(
     """Adjoint displacements and multipliers, shapes (n_dofs, m) and (n_multipliers, m)."""
     term = contact_of(system)
     contact = ContactEquations(system)
-    term._stiff = False
+    term.nodal = np.zeros(0)  # stiffness of the nodes at this state
     at, symmetric = system.evaluate(np.concatenate([u, surfaces.multipliers]), time), True
     if at.load_stiffness is not None:
         symmetric = system._add_load_stiffness(at)[0]

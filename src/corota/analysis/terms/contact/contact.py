@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota._core import OPEN, SLIPPING
-from corota.analysis.terms.contact.gaps import SAME, ContactState, Terms, covered, mean
-from corota.analysis.terms.term import NO_NODES, NONE, Term, TermOutput
+from corota.analysis.terms.contact.gaps import ContactState, Terms, covered, mean
+from corota.analysis.terms.term import NO_NODES, NONE, Term
 from corota.errors import ModelError, UnsupportedError
 from corota.lazy import lazy
 from corota.model.contact import ContactPair, Tie
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from corota.analysis.terms.contact.gaps import Kink, States
     from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.term import StatePoint
-    from corota.arrays import Floats, Ints
+    from corota.arrays import Bools, Floats, Ints
     from corota.model.steps import Step
 
     #: A pair, its gaps and slips, and its tractions p and q.
@@ -41,15 +41,11 @@ if TYPE_CHECKING:
 # Parts that models without contact do not need.
 check_side = lazy("corota.analysis.terms.contact.setup:check_side")
 guided_round_note = lazy("corota.analysis.terms.contact.output:guided_round_note")
-contact_output = lazy("corota.analysis.terms.contact.output:output")
-what_gives_way = lazy("corota.analysis.terms.contact.output:gives_way")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 near_side = lazy("corota.analysis.terms.contact.kinks:near_side")
 passed_through = lazy("corota.analysis.terms.contact.output:passed_through")
-facet_note = lazy("corota.analysis.terms.contact.output:facet_note")
 start_notes = lazy("corota.analysis.terms.contact.output:start_notes")
 sunk_between = lazy("corota.analysis.terms.contact.output:sunk_between")
-sunk_corner = lazy("corota.analysis.terms.contact.output:sunk_corner")
 
 #: Damping of stabilized surfaces per stiffness of their nodes and period.
 STABILIZE = 1e-3
@@ -74,6 +70,12 @@ class ContactTerm(Term):
     """
 
     name = "contact"
+    #: Values at slave nodes, and sums of the pairs.
+    output = lazy("corota.analysis.terms.contact.output:output")
+    #: Whether a body slides or tips beyond the committed state.
+    gives_way = lazy("corota.analysis.terms.contact.output:gives_way")
+    #: The sharp corner of a master that is wedged in a slave surface.
+    wedges = lazy("corota.analysis.terms.contact.output:sunk_corner")
 
     def __init__(self, system: NumberedModel) -> None:
         self.system = system
@@ -83,12 +85,10 @@ class ContactTerm(Term):
         dofs = np.full(3 * len(system.per_node) + 1, -1, np.int64)
         dofs[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
         self.pairs: list[Pair] = [make_pair(system, item, dofs) for item in items]
-        names: dict[str, int] = {}
-        for pair in self.pairs:
-            count = names[pair.item.name] = names.get(pair.item.name, 0) + 1
+        self.n, names = 0, [item.name for item in items]
+        for k, pair in enumerate(self.pairs):
+            count = names[: k + 1].count(pair.item.name)
             pair.name = pair.item.name + (f" ({count})" if count > 1 else "")
-        self.n = 0
-        for pair in self.pairs:
             pair.first = self.n
             self.n += pair.width
         self.committed = np.zeros(self.n)
@@ -120,7 +120,6 @@ class ContactTerm(Term):
         #: Work of what drives the slip in static increments, beyond that of the trapezoidal rule.
         self.late_work = 0.0
         self._pressure = np.zeros(system.n_dofs)
-        self._stiff = False
         #: The kink of the surfaces at which the committed equilibrium lies, and that at which the
         #: bodies may rest in the increment.
         self.kink: Kink | None = None
@@ -132,9 +131,8 @@ class ContactTerm(Term):
         #: Dropped constraints that were reported, and whether an unconstrained body was.
         self.reported_constraints: set[int] = set()
         self.reported_loose = False
-        self.border: SaddlePointSystem | None = (
-            None  # linear algebra with the multipliers, made when needed
-        )
+        #: Linear algebra with the multipliers, made when needed.
+        self.border: SaddlePointSystem | None = None
 
     # -- facts -------------------------------------------------------------------------
 
@@ -173,20 +171,6 @@ class ContactTerm(Term):
         if role != "slave":
             sides += [pair.master.node_list for pair in pairs if pair.master is not None]
         return np.concatenate(sides)
-
-    def output(self) -> TermOutput:
-        """Values at slave nodes, and sums of the pairs."""
-        return TermOutput(*contact_output(self))
-
-    def gives_way(self) -> str:
-        """Whether a body slides or tips beyond the committed state."""
-        said: str = what_gives_way(self)
-        return said
-
-    def wedges(self) -> str:
-        """The sharp corner of a master that is wedged in a slave surface."""
-        said: str = sunk_corner(self)
-        return said
 
     def remarks(self, u: Floats, finished: bool) -> list[str]:
         """Remarks on what went through a surface that no pair describes, or sank in between."""
@@ -241,7 +225,7 @@ class ContactTerm(Term):
         for pair, (p, _) in zip(self.pairs, self.parts(self.committed), strict=True):
             pair.rub(self.number, self._changed(0.0), p)
         self._enter(scheme == "central_difference", ramps)
-        if self._stiff:
+        if len(self.nodal):
             self._damp()
         held = self.system.constrained.copy()
         for relation in self.system.constraints.relations:
@@ -280,19 +264,18 @@ class ContactTerm(Term):
     def _check_pairs(self, step: Step, scheme: str) -> None:
         """Refuse pairs whose conditions a step does not have."""
         path = getattr(step, "path", None) is not None
-        other = scheme in ("central_difference", "energy_momentum")
+        how = "path control" if path else f"scheme={scheme!r}"
+        simple = path or scheme in ("central_difference", "energy_momentum")
         for pair in self.pairs:
-            why = ""
+            adheres, why = not pair.tied and not pair.separates, ""
             if path and isinstance(pair.item, ContactPair) and pair.item.varies:
                 why = (
                     "friction that depends on slip rate or pressure is not part of path control, "
                     "which has no time; use steps under loads"
                 )
-            adheres = not pair.tied and not pair.separates
-            if (path or other) and (adheres or pair.shear_limit < np.inf):
+            elif simple and (adheres or pair.shear_limit < np.inf):
                 what = "that do not separate" if adheres else "with a largest shear traction"
-                how = "path control" if path else f"scheme={scheme!r}"
-                why = why or (
+                why = (
                     f"surfaces {what} are not part of {how}; use static steps under loads, or "
                     "implicit ones"
                 )
@@ -318,76 +301,52 @@ class ContactTerm(Term):
 
     def _start_pair(self, pair: Pair, x: Floats, explicit: bool) -> None:
         """Check the initial gaps of a pair: report, adjust or ramp them."""
-        item = pair.item
-        if isinstance(item, Tie):
-            self._start_tie(pair, x)
-            return
-        check_side(self.system, item, pair.slave, x)
-        if pair.slave.pointwise:
-            # Lines keep the side that the other body is on at the start.
-            pair.core.search(x)
-            pair.core.evaluate(x, None)
-            pair.core.commit()
-        mesh = self.system.model.mesh
+        item, mesh = pair.item, self.system.model.mesh
+        if isinstance(item, ContactPair):
+            check_side(self.system, item, pair.slave, x)
+            if pair.slave.pointwise:
+                # Lines keep the side that the other body is on at the start.
+                pair.core.search(x)
+                pair.core.evaluate(x, None)
+                pair.core.commit()
         pair.core.search(x)
         raw = pair.core.evaluate(x, x)
         area = raw["total_area"]
         seen = covered(area, pair.full)
+        if isinstance(item, Tie):
+            self._check_tie(pair, seen)
+            return
         gap = mean(raw["total_gap"], area, pair.full)
-        self.notes += start_notes(pair, mesh, area if self.number == 1 else None, x[:, :2])
         if item.clearance is not None:
             pair.core.offset = np.where(seen, gap - item.clearance, 0.0)
             gap = np.where(seen, item.clearance, 0.0)
         pair.overlap = np.minimum(gap, 0.0)
         pair.base = pair.core.offset
-        adjusted = item.start == "adjust"
-        moved = np.full(len(gap), adjusted)
-        if adjusted and item.adjust_nodes is not None:
-            moved = np.isin(pair.nodes, mesh.node_indices(item.adjust_nodes))
-        deepest = int(np.argmin(gap))
-        longest = float(pair.slave.length.max())
-        if gap[deepest] < -SAME * longest:
-            how = {
-                "keep": "remains until the contact opens (start='ramp' removes it over the step)"
-                if explicit
-                else "is removed in the first increment (start='ramp' removes it over the "
-                "step, start='adjust' treats it as in contact)",
-                "adjust": "is treated as in contact without strain",
-                "ramp": "is removed over the first step",
-            }["keep" if adjusted and not moved[deepest] else item.start]
-            label = self.system.model.mesh.node_labels[pair.nodes[deepest]]
-            half = float(np.max(pair.slave.half, initial=0.0))
-            lines = f" (the surface is {half:.4g} away from the line)" if half else ""
-            self.notes.append(
-                f"contact pair {pair.name!r}: the surfaces overlap by up to "
-                f"{-gap[deepest]:.4g} at node {label} at the start{lines}; this {how}"
-            )
-            if facets := facet_note(pair, mesh.points, -float(gap[deepest])):
-                self.notes.append(facets)
-        if adjusted:
+        moved = np.full(pair.n, item.start == "adjust")
+        if item.start == "adjust":
             within = seen & (gap <= item.adjust)
             if item.adjust_nodes is not None:
+                moved = np.isin(pair.nodes, mesh.node_indices(item.adjust_nodes))
                 within = seen & moved
             near = np.where(within, np.maximum(gap, 0.0), 0.0)
             pair.core.offset = pair.core.offset + np.where(moved, pair.overlap, 0.0) + near
+        at_first = area if self.number == 1 else None
+        self.notes += start_notes(pair, mesh, at_first, x[:, :2], gap, moved, explicit)
         adjusted_gap = gap - (pair.core.offset - pair.base)
         pair.first_gap = np.where(seen, adjusted_gap, pair.reach)
         if not pair.separates:
             # What touches at the start has met.
             pair.closed = seen & (adjusted_gap <= pair.noise)
 
-    def _start_tie(self, pair: Pair, x: Floats) -> None:
-        pair.core.search(x)
-        raw = pair.core.evaluate(x, x)
-        bare = ~covered(raw["total_area"], pair.full)
-        if bare.all():
+    def _check_tie(self, pair: Pair, seen: Bools) -> None:
+        if not seen.any():
             raise ModelError(
                 f"tie {pair.name!r}: no edge of {pair.slave.name!r} lies on {pair.item.master!r} "
                 "within its tolerance; raise it (tolerance=, POSITION TOLERANCE=)",
                 pair.item.where,
             )
-        if bare.any():
-            labels = self.system.model.mesh.node_labels[pair.nodes[bare]]
+        if not seen.all():
+            labels = self.system.model.mesh.node_labels[pair.nodes[~seen]]
             self.notes.append(
                 f"tie {pair.name!r}: {len(labels)} nodes of {pair.slave.name!r} are out of "
                 f"tolerance and stay free: {few(labels)}"
@@ -452,10 +411,10 @@ class ContactTerm(Term):
         Parameters
         ----------
         values : ndarray, shape (nnz,)
-            Tangent of the elements, for the stiffness of the nodes.
+            Tangent of the elements, for the stiffness of the nodes; empty where it is not needed.
         """
         system, since = self.system, self.slip_start
-        if not self._stiff:
+        if len(values) and not len(self.nodal):
             self._measure(values)
         x, old = (self.positions(v) for v in (u, self.u if since is None else since))
         force, size = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
@@ -545,7 +504,6 @@ class ContactTerm(Term):
             k = nodal[pair.nodes]
             pair.stiffness = np.where(k > 0.0, k, top) / pair.full
         self._damp()
-        self._stiff = True
 
     def _damp(self) -> None:
         """Damp the surfaces that this step stabilizes."""
@@ -592,15 +550,14 @@ class ContactTerm(Term):
         contact_state.where = self.positions(0.5 * (self.u + u) if self.persistent else u)
         self.u, self.committed, self.time = u.copy(), contact_state.multipliers.copy(), step_time
         contact_state.states = self.states(contact_state.terms, self.committed)
-        # Rounding leaves small tractions on open constraints.
-        for pair, state, tractions in zip(
-            self.pairs, contact_state.states, self.parts(self.committed), strict=True
-        ):
+        contact_state.acting = [terms.acting for terms in contact_state.terms]
+        each = self.each(contact_state.terms, self.committed)
+        for i, (pair, terms, tractions) in enumerate(each):
+            state = contact_state.states[i]
+            # Rounding leaves small tractions on open constraints.
             for part in tractions if not pair.tied else ():
                 part[state == OPEN] = 0.0
             pair.keep_closed(state)
-        contact_state.acting = [terms.acting for terms in contact_state.terms]
-        for i, (pair, terms) in enumerate(zip(self.pairs, contact_state.terms, strict=True)):
             if pair.start is not None:
                 pair.start = terms.parts
             contact_state.terms[i] = replace(terms.bare or terms, between=None)
@@ -632,10 +589,7 @@ class ContactTerm(Term):
 
     def label(self, pair: Pair, constraint: int) -> int:
         """The user's number of the slave node of a constraint, or of the corner."""
-        node = pair.nodes[constraint]
-        if constraint >= pair.of_surfaces and pair.corners[constraint - pair.of_surfaces] >= 0:
-            node = pair.corners[constraint - pair.of_surfaces]
-        return int(self.system.model.mesh.node_labels[node])
+        return int(self.system.model.mesh.node_labels[pair.named[constraint]])
 
 
 def few(labels: Sequence[int] | Ints, most: int = 5) -> str:

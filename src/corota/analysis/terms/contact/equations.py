@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -573,20 +572,16 @@ class ContactEquations:
         if not self.system.nlgeom:
             return ""
         since = None if moves else self.since
-        old, new = (
-            self.term.positions(self.term.u if since is None else since),
-            self.term.positions(z[: self.n]),
-        )
+        start = self.term.u if since is None else since
+        ends = self.term.positions(start), self.term.positions(z[: self.n])
         still = self.pivoted and not self.relaxing and not moves
         if still and not self.near(z[: self.n]):
             return (
                 "the equilibrium found is far from the last one: the bodies would jump in this "
                 "increment"
             )
-        for k, (pair, terms, (p, q)) in enumerate(self.pairs(at.contact_state)):
-            starts = partial(pair.outside, self.term, k, moves)
-            states = partial(pair.states, terms, p, q)
-            found = pair.passed(old, new, states, terms, starts)
+        for k, (pair, terms, tractions) in enumerate(self.pairs(at.contact_state)):
+            found = pair.passed(self.term, k, ends, terms, tractions, moves)
             if len(found):
                 return (
                     f"node {self.term.label(pair, int(found[0]))} passed through the "

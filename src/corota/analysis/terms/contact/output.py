@@ -25,6 +25,7 @@ from corota.analysis.terms.contact.setup import (
     sharp_corners,
     signed_distances,
 )
+from corota.analysis.terms.term import TermOutput
 from corota.arrays import distinct
 from corota.mesh.parts import part_of_nodes
 from corota.model.contact import ContactPair, RigidCurve, edges_or_nodes
@@ -37,27 +38,19 @@ if TYPE_CHECKING:
     from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.equations import ContactEquations
     from corota.analysis.terms.contact.pair import Pair, Terms
-    from corota.arrays import Floats, Ints
+    from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
     from corota.model.model import Model
 
 
-def output(
-    term: ContactTerm,
-) -> tuple[Floats | None, dict[str, float], dict[str, Floats]]:
+def output(term: ContactTerm) -> TermOutput:
     """Contact at the nodes of the committed state, and sums of the pairs.
 
-    Returns
-    -------
-    values : ndarray, shape (n_nodes, 5), or None without pairs
-        See :attr:`corota.results.Frame.C`.
-    sums : dict of str to float
-        Force on the slave surface, its moment about the origin, area, gap, and energies.
-    pairs : dict of str to ndarray, shape (n_nodes, 5)
-        See :attr:`corota.results.Frame.pairs`.
+    The sums are the force on the slave surface, its moment about the origin, area, gap, and
+    energies.
     """
     if not term.pairs:
-        return None, {}, {}
+        return TermOutput()
     n = len(term.system.per_node)
     values = np.zeros((n, 5))
     sums: dict[str, float] = {}
@@ -99,7 +92,7 @@ def output(
     sums["friction energy"] = friction
     sums["contact energy"] = law
     sums["stabilization energy"] = term.damping_work
-    return values, sums, each
+    return TermOutput(values, sums, each)
 
 
 def pressures(
@@ -284,11 +277,7 @@ def gives_way(contact_term: ContactTerm) -> str:
                 f"friction of contact pair {pair.name!r} is used up: a body that it alone holds "
                 "slides"
             )
-        nodes = pair.nodes.copy()
-        nodes[pair.of_surfaces :] = np.where(
-            pair.corners >= 0, pair.corners, nodes[pair.of_surfaces :]
-        )
-        at_node = np.bincount(nodes, force)
+        at_node = np.bincount(pair.named, force)
         node = int(np.argmax(at_node))
         mesh = contact_term.system.model.mesh
         edges = mesh.edge_nodes(mesh.boundary_edges())
@@ -333,12 +322,44 @@ def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
     return ""
 
 
-def start_notes(pair: Pair, mesh: Mesh, area: Floats | None, x: Floats) -> list[str]:
-    """Notes on a pair that begins to act at positions `x`; `area` is None after the first step."""
+def start_notes(
+    pair: Pair,
+    mesh: Mesh,
+    area: Floats | None,
+    x: Floats,
+    gap: Floats,
+    adjusted: Bools,
+    explicit: bool,
+) -> list[str]:
+    """Notes on a pair that begins to act at positions `x`.
+
+    `area` is None after the first step. Of the constraints with their gaps [length], overlaps of
+    some are `adjusted`.
+    """
     labels = mesh.node_labels
     notes = [fillet_note(pair), corner_note(pair, mesh.points, labels)]
     if area is not None:
         notes.append(partly_covered_note(pair, area, x, labels))
+    deepest = int(np.argmin(gap))
+    overlap, edge = -float(gap[deepest]), float(pair.slave.length.max())
+    if overlap > SAME * edge:
+        start = "adjust" if adjusted[deepest] else "keep"
+        if isinstance(pair.item, ContactPair) and pair.item.start == "ramp":
+            start = "ramp"
+        how = {
+            "keep": "is removed in the first increment (start='ramp' removes it over the step, "
+            "start='adjust' treats it as in contact)",
+            "explicit": "remains until the contact opens (start='ramp' removes it over the step)",
+            "adjust": "is treated as in contact without strain",
+            "ramp": "is removed over the first step",
+        }["explicit" if explicit and start == "keep" else start]
+        half = float(np.max(pair.slave.half, initial=0.0))
+        lines = f" (the surface is {half:.4g} away from the line)" if half else ""
+        notes.append(
+            f"contact pair {pair.name!r}: the surfaces overlap by up to {overlap:.4g} at node "
+            f"{labels[pair.nodes[deepest]]} at the start{lines}; this {how}"
+        )
+        notes.append(facet_note(pair, mesh.points, overlap))
     return [note for note in notes if note]
 
 

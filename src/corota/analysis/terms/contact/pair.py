@@ -25,14 +25,13 @@ from corota.analysis.terms.contact.setup import (
     chords,
     curve_at,
     make_core,
+    rotated,
 )
 from corota.arrays import distinct
 from corota.mesh.parts import components
 from corota.model.contact import METHODS, ContactPair, RigidCurve, Tie
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from corota.analysis.numbered_model import NumberedModel
@@ -129,6 +128,9 @@ class Pair:
         self.of_nodes = len(distinct(self.nodes))
         self.corners = np.asarray(self.core.corners, np.int64)
         self.of_surfaces = self.n - len(self.corners)
+        #: Nodes in messages: of a sharp corner of the mesh, itself.
+        self.named = self.nodes.copy()
+        self.named[self.of_surfaces :][self.corners >= 0] = self.corners[self.corners >= 0]
         #: Constraint of each node, -1 for none.
         self.place = np.full(len(system.per_node) + 1, -1, np.int64)
         self.place[self.nodes[: self.of_nodes]] = np.arange(self.of_nodes)
@@ -305,16 +307,14 @@ class Pair:
             middle = np.isin(np.where(right < 0, left, right), self.place[self.slave.nodes[:, 2]])
             self.held_ends |= self.guided_ends & middle
             self.guided_ends &= ~middle
-        self.planes = []
-        self.resting = np.zeros(self.n, bool)
-        if self.two and not self.tied and not moves:
-            for k in np.flatnonzero(self.guided_ends).tolist():
-                along = constrained[self.nodes[k], :2]
-                other = self._across(k, along, constrained)
-                if other is None:
-                    self.planes = []
-                    break
-                self.planes.append((k, other, along))
+        self.planes, self.resting = [], np.zeros(self.n, bool)
+        for k in np.flatnonzero(self.guided_ends).tolist() if self.rubs and not moves else ():
+            along = constrained[self.nodes[k], :2]
+            other = self._across(k, along, constrained)
+            if other is None:
+                self.planes = []
+                break
+            self.planes.append((k, other, along))
         self.core.hold(self.guided_ends.tolist(), self.keeps_means)
 
     @property
@@ -668,50 +668,47 @@ class Pair:
 
     def passed(
         self,
-        old: Floats,
-        new: Floats,
-        states: Callable[[], NDArray[np.int8]],
+        term: Any,
+        number: int,
+        ends: tuple[Floats, Floats],
         terms: Terms,
-        starts: Callable[[], Floats],
+        tractions: tuple[Floats, Floats],
+        moves: bool,
     ) -> Ints:
         """Constraints whose node crossed the other side from outside to inside and is open.
 
-        `old` and `new` are positions at both ends of the increment, shape (n_nodes, 3), `terms` the
-        gaps at its end, `states` finds the states there, `starts` the outer sides: `outside`.
+        The pair has this `number` in the term. `ends` are positions at both ends of an increment,
+        shape (n_nodes, 3), `terms` and `tractions` those of the last; `moves` says if it is one of
+        motion.
         """
-        if self.tied:
-            return np.zeros(0, np.int64)
-        first, last, ends = self.other_side(old, new)
-        if not len(first):
+        old, new = ends
+        first, last, between = self.other_side(old, new)
+        if self.tied or not len(first):
             return np.zeros(0, np.int64)
         least = min(self.reach, self.width_across)
-        nodes, state = self.nodes, None
-        through = np.arange(len(nodes))
+        nodes, through, start = self.nodes, np.arange(self.n), None
         unseen = ~covered(terms.area, self.full)
         # Bodies that turn together go along arcs: who passes goes through seen from either of them.
         sides = (old[nodes, :2], new[nodes, :2]), (first.reshape(-1, 2), last.reshape(-1, 2))
         turns = [_turn(*side) for side in sides]
         common = abs(math.remainder(turns[0] - turns[1], math.tau)) <= STRAIGHT < abs(turns[0])
         for turn in sorted(set(turns)) if common else [0.0]:
-            c, s = math.cos(turn), math.sin(turn)
-            back = np.array([[c, -s], [s, c]])
-            seen, end = np.column_stack([new[:, :2] @ back, new[:, 2]]), last @ back
-            center, spread = np.zeros(2), 0.0
-            if first is not last:
-                drift = (end - first).reshape(-1, 2)
-                center = drift.mean(axis=0)
-                spread = np.hypot(*(drift - center).T).max()
+            seen, end = new.copy(), rotated(last, -turn)
+            seen[:, :2] = rotated(new[:, :2], -turn)
+            drift = (end - first).reshape(-1, 2)
+            center = drift.mean(axis=0)
+            spread = np.hypot(*(drift - center).T).max()
             moved = np.hypot(*(seen[nodes, :2] - old[nodes, :2] - center).T) + spread
             far = (moved > UNSEEN * least) | (unseen & (moved > self.depth))
             through = through[far[through]]
             if not len(through):
                 break
-            state = states() if state is None else state
-            closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
+            if start is None:
+                start = self._outside(term, number, moves)
+                closed = np.isin(nodes, nodes[self.states(terms, *tractions) != OPEN])
             through = through[~closed[through]]
-            start = starts()[through]
             share = _core.times_of_crossing(
-                first, end, ends, old, seen, nodes[through], start, SMALL * self.edge
+                first, end, between, old, seen, nodes[through], start[through], SMALL * self.edge
             )
             through = through[share < math.inf]
         return through
@@ -747,18 +744,18 @@ class Pair:
         body = closed and twice > SAME * size.max() ** 2 and not getattr(self.item, "itself", False)
         return float(size.min()) if body else math.inf
 
-    def outside(self, term: Any, k: int, moves: bool) -> Floats:
+    def _outside(self, term: Any, number: int, moves: bool) -> Floats:
         """Distance from the other side from which each node starts outside, shape (n,).
 
-        The pair is number `k` of the term. A node may touch. In motion (`moves`) an open one may be
-        behind, where a scheme closes gaps after the impact.
+        A node may touch. In motion an open one may be behind, where a scheme closes gaps after the
+        impact.
         """
         committed = None if term.at is None else term.at.states
         start = np.full(self.n, -SMALL * self.edge)
         if moves and math.isfinite(self.depth):
-            behind = self.gaps_at(term, k, term.positions(term.u)).gap < 0.0
+            behind = self.gaps_at(term, number, term.positions(term.u)).gap < 0.0
             if committed:
-                behind &= committed[k] == OPEN
+                behind &= committed[number] == OPEN
             start[behind] = -self.depth
         return start
 

@@ -673,7 +673,9 @@ def curve_at(curve: RigidCurve, pieces: Floats, points: Floats, x: Floats) -> Fl
     return rotated(pieces, curve.turns * x[node, 2], points[node, :2], x[node, :2])
 
 
-def rotated(x: Floats, turn: float, about: Floats, to: Floats) -> Floats:
+def rotated(
+    x: Floats, turn: float, about: Floats | float = 0.0, to: Floats | float = 0.0
+) -> Floats:
     """Points turned about one point by an angle and moved to another."""
     c, s = math.cos(turn), math.sin(turn)
     return np.asarray((x - about) @ np.array([[c, s], [-s, c]]) + to)
