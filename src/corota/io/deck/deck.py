@@ -128,7 +128,7 @@ class Deck:
     pretensions: list[PretensionDraft] = field(default_factory=list)
     #: Node sets whose members keep their order in ``*EQUATION``.
     unsorted: set[str] = field(default_factory=set)
-    carriers: dict[str, tuple[Card, Draft | None]] = field(default_factory=dict)
+    carriers: list[tuple[Card, Draft | None]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     hidden: int = 0

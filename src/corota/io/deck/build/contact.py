@@ -20,7 +20,7 @@ from corota.model.steps import Buckle, Frequency, Visco
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
     from corota.io.deck.build.targets import Targets
-    from corota.io.deck.drafts import InteractionDraft, PairDraft, Surface, SurfaceRow
+    from corota.io.deck.drafts import Draft, InteractionDraft, PairDraft, Surface, SurfaceRow
     from corota.mesh.data import Mesh
 
 #: Procedures without velocities; ``None`` is a static step.
@@ -32,11 +32,12 @@ def build_contacts(targets: Targets) -> None:
     builder, deck = _Builder(targets), targets.deck
     add_general(deck, targets.model, targets.sets)
     for pair in deck.pairs:
-        try:
-            with suppress(Refused):
-                builder.add(pair)
-        except InputError as error:
-            deck.error(pair.row.card, pair.row.where, error.message, text=pair.row.text)
+        for view in builder.views(pair.row.card):
+            try:
+                with targets.inside(view), suppress(Refused):
+                    builder.add(pair)
+            except InputError as error:
+                deck.error(pair.row.card, pair.row.where, error.message, text=pair.row.text)
     builder.unused()
 
 
@@ -45,10 +46,12 @@ class _Builder:
         self.targets, self.deck, self.model = targets, targets.deck, targets.model
         self.sets, self.rotating = targets.sets, targets.rotating
         self.curves: dict[str, RigidCurve] = {}
-        self.carriers = {
-            self._full(card, shown) or key(shown): (card, draft)
-            for shown, (card, draft) in self.deck.carriers.items()
-        }
+        self.carriers: dict[str, tuple[Card, Draft | None, View]] = {}
+        for card, draft in self.deck.carriers:
+            shown = card.value("ANALYTICALSURFACE")
+            for view in self.views(card):
+                full = self.sets.full_name(self.sets.surfaces, view, shown)
+                self.carriers[full or key(shown)] = (card, draft, view)
 
     def add(self, pair: PairDraft) -> None:
         """Build one pair; errors are recorded in the deck."""
@@ -63,7 +66,7 @@ class _Builder:
         if isinstance(slave, RigidCurve):
             text = f"{pair.slave} is a rigid profile and cannot be the slave"
             pair.row.refuse(0, text, "name the deformable surface first, the rigid one second")
-        name = pair.name or f"{pair.slave}-{pair.master}"
+        name = self.targets.at.prefix + (pair.name or f"{pair.slave}-{pair.master}")
         if pair.tied or (interaction is not None and interaction.law == "TIED"):
             if isinstance(master, RigidCurve):
                 text = "nothing can be tied to a rigid profile"
@@ -109,8 +112,7 @@ class _Builder:
         """Nodes of ``ADJUST=set``."""
         if not pair.adjust_set:
             return None
-        view = self._view(pair.row.card)
-        name = self.sets.mesh_name(self.model.mesh.node_sets, view, pair.adjust_set)
+        name = self.sets.mesh_name(self.model.mesh.node_sets, self.targets.at, pair.adjust_set)
         if not name:
             hint = nearest(pair.adjust_set, self.model.mesh.node_sets)
             hint = hint or "or give the distance up to which gaps are closed without strain"
@@ -146,7 +148,7 @@ class _Builder:
     def _surface(self, pair: PairDraft, index: int) -> str | Ints | RigidCurve:
         """A surface of a pair: name of edges, edges, or a rigid curve."""
         name = (pair.slave, pair.master)[index]
-        full = self._full(pair.row.card, name)
+        full = self.sets.full_name(self.sets.surfaces, self.targets.at, name)
         found = self.sets.surfaces.get(full)
         index = min(index, len(pair.row) - 1)
         if found is None:
@@ -177,14 +179,9 @@ class _Builder:
             pair.row.refuse(index, f"surface {name} cannot be used for contact: {what}", hint)
         return edges if surface.nodes else full
 
-    def _view(self, card: Card) -> View:
-        """Name space of a card; the assembly for one of a part without instances."""
-        return (views_in(self.sets.views, self.deck, card.scope) or self.sets.views)[0]
-
-    def _full(self, card: Card, name: str) -> str:
-        """Key of a surface that a card names."""
-        view = self._view(card)
-        return self.sets.full_name(self.sets.surfaces, view, name)
+    def views(self, card: Card) -> list[View]:
+        """Name spaces of a card; the assembly for one of a part without instances."""
+        return views_in(self.sets.views, self.deck, card.scope) or self.sets.views[:1]
 
     def _curve(self, name: str, surface: Surface) -> RigidCurve:
         if surface.profile is None:
@@ -196,9 +193,10 @@ class _Builder:
         for columns in (slice(0, 2), slice(2, 4), slice(4, 6)):
             rows[:, columns] = placed(rows[:, columns], view.instance)
         reference: int | None = None
-        card, draft = self.carriers.get(name, (surface.card, None))
+        card, draft, at = self.carriers.get(name, (surface.card, None, view))
         if draft is not None:
-            reference = self.targets.one_node(draft)
+            with self.targets.inside(at):
+                reference = self.targets.one_node(draft)
             self.rotating[reference] = True
         else:
             missing = "REF NODE" if name in self.carriers else "*RIGID BODY"
@@ -247,12 +245,13 @@ class _Builder:
                 full = self.sets.full_name(self.sets.elsets, view, tie.elset)
                 found = self.sets.element_set(full) if full else None
                 if found is not None and lines <= set(found.lines.tolist()):
-                    return self.targets.one_node(tie.terms[0])
+                    with self.targets.inside(view):
+                        return self.targets.one_node(tie.terms[0])
         surface.card.refuse(f"the sides of {surface.name} belong to no *RIGID BODY, ELSET=")
 
     def unused(self) -> None:
         """Report rigid bodies of undefined profiles, and unused definitions."""
-        for name, (card, _) in self.carriers.items():
+        for name, (card, _, _) in self.carriers.items():
             if name not in self.sets.surfaces:
                 shown = card.value("ANALYTICALSURFACE")
                 hint = nearest(shown, [s.name for _, s in self.sets.surfaces.values()])

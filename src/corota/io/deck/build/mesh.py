@@ -19,9 +19,11 @@ from corota.mesh.kinds import KINDS
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, GOOD, classify
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from corota.arrays import Bools, Floats, Ints
     from corota.io.deck.deck import Deck
-    from corota.io.deck.drafts import ElementBlock, Instance, NodeBlock, Scope
+    from corota.io.deck.drafts import AttachedDraft, ElementBlock, Instance, NodeBlock, Scope
 
 #: Largest coordinate; areas and their products stay finite.
 LARGEST = 1e100
@@ -503,6 +505,13 @@ def views_in(views: list[View], deck: Deck, scope: object) -> list[View]:
     ]
 
 
+def attached_in(views: list[View], deck: Deck) -> Iterator[tuple[View, AttachedDraft]]:
+    """Each card of point masses and the like, in each of its views."""
+    for draft in deck.attached:
+        for view in views_in(views, deck, draft.scope):
+            yield view, draft
+
+
 def _truss_labels(scope: Scope) -> Ints:
     """Line elements of sets that contain only lines and have a section: trusses."""
     none = np.zeros(0, np.int64)
@@ -541,10 +550,16 @@ def placed(points: Floats, instance: Instance | None) -> Floats:
     """Shift, then rotate."""
     if instance is None:
         return points
-    moved = points + np.array(instance.shift)
-    c, s = math.cos(instance.angle), math.sin(instance.angle)
     center = np.array(instance.center)
-    return np.asarray((moved - center) @ np.array([[c, s], [-s, c]]) + center)
+    return np.asarray(turned(points + np.array(instance.shift) - center, instance) + center)
+
+
+def turned(directions: Floats, instance: Instance | None) -> Floats:
+    """Directions that a part gives, in the assembly."""
+    if instance is None:
+        return directions
+    c, s = math.cos(instance.angle), math.sin(instance.angle)
+    return np.asarray(directions @ np.array([[c, s], [-s, c]]))
 
 
 def _where(blocks: list[NodeBlock] | list[ElementBlock], row: int) -> Location:

@@ -72,9 +72,8 @@ class ModelBuilder:
         self._enter("sections")
         for tie in deck.ties:
             for view in views_in(self.meshes.views, deck, tie.card.scope):
-                targets.at = view
-                build_tie(targets, tie)
-        targets.at = self.meshes.views[0]
+                with targets.inside(view):
+                    build_tie(targets, tie)
         if deck.has_contact:
             build_contacts(targets)
         model.amplitudes = {a.name: a for a in deck.amplitudes.values()}

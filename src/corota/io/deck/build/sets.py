@@ -12,7 +12,7 @@ import numpy as np
 
 from corota.arrays import Ints, distinct
 from corota.io.deck import numerals
-from corota.io.deck.build.mesh import MeshBuilder, View, view_of
+from corota.io.deck.build.mesh import MeshBuilder, View, attached_in, view_of
 from corota.io.deck.card import Card, Refused, key, nearest
 from corota.io.deck.elements import WITH_SIDES
 from corota.mesh.kinds import EDGES
@@ -70,14 +70,16 @@ class Sets:
             ):
                 for name, found in theirs.items():
                     mine[prefix + name] = (view, found)  # type: ignore[assignment]
-        #: Numbers of point masses and dashpots, from 0, by label and by set.
-        self.attached: dict[int, int] = {}
+        #: Numbers of point masses and dashpots, from 0, by prefix and label, and by set.
+        self.attached: dict[tuple[str, int], int] = {}
         self.attached_sets: dict[str, list[int]] = {}
-        for draft in self.deck.attached:
+        number = 0
+        for view, draft in attached_in(self.views, self.deck):
             for label in draft.labels:
-                number = len(self.attached)
-                self.attached[label] = number
-                self.attached_sets.setdefault(key(draft.name), []).append(number)
+                self.attached[view.prefix, label] = number
+                full = key(view.prefix) + key(draft.name)
+                self.attached_sets.setdefault(full, []).append(number)
+                number += 1
         #: Labels without nodes, by set: name, labels, place.
         self.missing: list[tuple[str, Ints, Location]] = []
         self._nodes: dict[str, Ints | None] = {}
@@ -218,7 +220,8 @@ class Sets:
             known = np.where(rows >= 0, rows, curves)
             other = entry.labels[known < 0]
             if len(other):
-                numbers = np.array([self.attached.get(i, -1) for i in other.tolist()], np.int64)
+                own = [self.attached.get((place.prefix, i), -1) for i in other.tolist()]
+                numbers = np.array(own, np.int64)
                 attached.append(numbers[numbers >= 0])
                 other = other[numbers < 0]
             if len(other):
@@ -249,16 +252,19 @@ class Sets:
                 if full in self._elements and self._elements[full] is None:
                     self.deck.error(card, where, f"element set {target} contains itself")
                 return self.element_set(full)
-            if key(target) in self.attached_sets:
-                return Elements(_NONE, _NONE, np.array(self.attached_sets[key(target)]))
+            full = self.full_name(self.attached_sets, view, target)
+            if full:
+                return Elements(_NONE, _NONE, np.array(self.attached_sets[full]))
             found = view_of(self.views, target)
         if found and numerals.is_label(found[1]):
             label = np.array([int(found[1])])
             cells, lines = found[0].cells(label), found[0].lines(label)
             if cells[0] >= 0 or lines[0] >= 0:
                 return Elements(self._with_halves(cells[cells >= 0]), lines[lines >= 0])
-            if int(label[0]) in self.attached:
-                return Elements(_NONE, _NONE, np.array([self.attached[int(label[0])]]))
+            for place in (found[0], self.views[0]):
+                if (place.prefix, int(label[0])) in self.attached:
+                    number = self.attached[place.prefix, int(label[0])]
+                    return Elements(_NONE, _NONE, np.array([number]))
             self.deck.error(card, where, f"element {target} is not defined", text=text)
             return None
         hint = nearest(target, [self.spelled(self.elsets, n) for n in self.elsets])

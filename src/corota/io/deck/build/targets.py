@@ -3,19 +3,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from corota.io.deck import numerals
-from corota.io.deck.build.mesh import MeshBuilder, View, view_of
+from corota.io.deck.build.mesh import MeshBuilder, View, view_of, views_in
 from corota.io.deck.build.sets import Elements, Sets
 from corota.io.deck.card import Refused, key, nearest
 from corota.io.deck.deck import Deck
 from corota.model.model import Model
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from corota.arrays import Floats, Ints
     from corota.io.deck.drafts import Draft, TieDraft
@@ -45,21 +46,45 @@ class Targets:
         self.used: set[str] = set()
         self.twins: tuple[Ints, Ints] = (np.zeros(0, np.int64), np.zeros(0, np.int64))
 
+    @contextmanager
+    def inside(self, view: View) -> Iterator[None]:
+        """Look for names in one view first."""
+        before, self.at = self.at, view
+        try:
+            yield
+        finally:
+            self.at = before
+
     def nodes(self, draft: Draft) -> str | Ints | None:
         """Name in the mesh, or indices, of a target of supports and nodal forces."""
+        views = self._views(draft)
+        if len(views) == 1:
+            return self._nodes(draft, views[0])
+        found = [self._nodes(draft, view) for view in views]
+        known = [self.mesh.node_indices(nodes) for nodes in found if nodes is not None]
+        return np.concatenate(known) if known and len(known) == len(found) else None
+
+    def _views(self, draft: Draft) -> list[View]:
+        """Where a draft looks for names: in the instances of its part, if it stands in one."""
+        views = self.meshes.views
+        if self.at is not views[0]:
+            return [self.at]
+        return views_in(views, self.deck, draft.card.scope)
+
+    def _nodes(self, draft: Draft, at: View) -> str | Ints | None:
         target, row = draft.target, draft.row
         self.used.add(key(target))
         found: tuple[View, str] | None
         if numerals.is_integer(target):
-            found = (self.numbering(self.at, target, "nodes"), target)
+            found = (self.numbering(at, target, "nodes"), target)
         else:
-            full = self.sets.full_name(self.sets.nsets, self.at, target)
+            full = self.sets.full_name(self.sets.nsets, at, target)
             if full:
                 if not len(self.mesh.node_sets.get(self.sets.spelled(self.sets.nsets, full), ())):
                     row.error(0, f"node set {target} is empty")
                     return None
                 return self.sets.spelled(self.sets.nsets, full)
-            name = self.sets.mesh_name(self.mesh.node_sets, self.at, target)
+            name = self.sets.mesh_name(self.mesh.node_sets, at, target)
             if name:
                 return name
             found = view_of(self.meshes.views, target)
@@ -105,10 +130,17 @@ class Targets:
 
     def cells_of(self, draft: Draft) -> Elements | None:
         """Cells that a draft names."""
-        view = self.meshes.views[0]
-        if numerals.is_integer(draft.target):
-            view = self.numbering(view, draft.target, "cells")
-        return self.sets.elements(view, draft.target, draft.row.at(0), draft.card, draft.row.text)
+        views, row, found = self._views(draft), draft.row, []
+        for view in views:
+            at = view
+            if numerals.is_integer(draft.target):
+                at = self.numbering(view, draft.target, "cells")
+            found.append(self.sets.elements(at, draft.target, row.at(0), draft.card, row.text))
+        known = [one for one in found if one is not None]
+        if len(known) < len(found) or not known:
+            return None
+        names = ("cells", "lines", "attached")
+        return Elements(*(np.concatenate([getattr(one, n) for one in known]) for n in names))
 
     def tied(self, tie: TieDraft) -> Ints | None:
         """Nodes of the elements that a constraint names."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from corota.errors import InputError
+from corota.io.deck.build.mesh import placed
 from corota.io.deck.card import Refused, key, nearest
 from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
 
@@ -39,7 +40,13 @@ def _build(targets: Targets, tie: TieDraft) -> None:
         assert tie.target is not None
         nodes = targets.nodes(tie.target)
         if nodes is not None:
-            model.axes.append(LocalAxes(nodes, tie.angle, tie.center, tie.where))
+            angle, center, placing = tie.angle, tie.center, targets.at.instance
+            if placing is not None and center is None:
+                angle += placing.angle
+            elif center is not None:
+                x, y = placed(np.array(center), placing).tolist()
+                center = (x, y)
+            model.axes.append(LocalAxes(nodes, angle, center, tie.where))
         return
     if tie.kind in OTHERS:
         OTHERS[tie.kind](targets, tie)

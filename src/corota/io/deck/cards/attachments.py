@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError, Location
+from corota.io.deck.build.mesh import attached_in, turned
 from corota.io.deck.card import Card, Refused, Row, complete, key, nearest
 from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import PLANAR, AttachedDraft, Draft
@@ -87,11 +88,8 @@ def _later(deck: Deck, card: Card, read: Callable[[], None]) -> None:
 
 
 def _dashpot(deck: Deck, card: Card) -> None:
-    rows, name = list(card.rows()), key(card.value("ELSET"))
-    type_ = next(
-        (d.type for d in deck.attached if d.type.startswith("DASHPOT") and key(d.name) == name),
-        "DASHPOTA",
-    )
+    rows = list(card.rows())
+    type_ = next((d.type for d in named(deck, card, "DASHPOT")), "DASHPOTA")
     dofs: list[int | None] = []
     if type_ != "DASHPOTA":
         if not rows:
@@ -176,10 +174,17 @@ def _gap(deck: Deck, card: Card) -> None:
     _assign(deck, card, "GAPUNI", (size, x, y))
 
 
+def named(deck: Deck, card: Card, type_: str) -> list[AttachedDraft]:
+    """Elements of a type in the set that a card names: those beside it, else those anywhere."""
+    name = key(card.value("ELSET"))
+    mine = [d for d in deck.attached if d.type.startswith(type_) and key(d.name) == name]
+    return [d for d in mine if d.scope is card.scope] or mine
+
+
 def _assign(deck: Deck, card: Card, type_: str, value: tuple[float, ...]) -> list[AttachedDraft]:
     """Give the elements of a set their value; returns them."""
     name = card.value("ELSET")
-    mine = [d for d in deck.attached if d.type == type_ and key(d.name) == key(name)]
+    mine = named(deck, card, type_)
     for draft in mine:
         if draft.value:
             card.refuse(f"{name} already has its value", "ELSET")
@@ -198,7 +203,8 @@ def build_attachments(targets: Targets) -> None:
         with suppress(Refused):
             read()
     number = -1
-    for draft in deck.attached:
+    for view, draft in attached_in(targets.meshes.views, deck):
+        targets.at = view
         if draft.type == "CONN2D2":
             number += len(draft.labels)
             connect(targets, draft)
@@ -223,15 +229,18 @@ def build_attachments(targets: Targets) -> None:
             elif draft.type.startswith("DASHPOT"):
                 add_dashpot(deck, model, draft.card, where, nodes, draft.value, draft.table)
             else:
-                points, (clearance, x, y) = model.mesh.points, draft.value
-                direction = (x, y) if x or y else tuple(points[nodes[1]] - points[nodes[0]])
-                both, name = (nodes[0], nodes[1]), f"{draft.name}-{label}"
+                points, (clearance, *given) = model.mesh.points, draft.value
+                line = points[nodes[1]] - points[nodes[0]]
+                x, y = turned(np.array(given), view.instance) if any(given) else line
+                direction = (float(x), float(y))
+                both, name = (nodes[0], nodes[1]), f"{view.prefix}{draft.name}-{label}"
                 try:
                     found_gap = gap_element(points, both, clearance, direction, name, where)
                 except InputError as error:
                     deck.error(draft.card, where, f"{error.message}; give it by *GAP")
                     continue
                 model.contacts.append(found_gap)
+    targets.at = targets.meshes.views[0]
 
 
 def add_dashpot(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.io.deck.card import Card, Refused, Row, complete, key, nearest
-from corota.io.deck.cards.attachments import add_dashpot, damping_rows
+from corota.io.deck.cards.attachments import add_dashpot, damping_rows, named
 from corota.io.deck.cards.release import add_twin, point_of
 from corota.io.deck.cards.step import open_step
 from corota.io.deck.cards.supports import RATES
@@ -26,6 +26,7 @@ from corota.io.deck.drafts import (
     Entry,
     LineDraft,
     NamedSet,
+    Scope,
 )
 from corota.io.deck.elements import LINE_ELEMENTS
 from corota.io.deck.keywords import keyword
@@ -203,7 +204,7 @@ def prepare_connectors(deck: Deck) -> None:
                     _pins(deck, draft, section)
             continue
         name = section.card.value("ELSET")
-        mine = [d for d in deck.attached if d.type == "CONN2D2" and key(d.name) == key(name)]
+        mine = named(deck, section.card, "CONN2D2")
         if not mine:
             names = [d.name for d in deck.attached if d.type == "CONN2D2"]
             text = f"no *ELEMENT, TYPE=CONN2D2 with the set {name!r}"
@@ -267,7 +268,10 @@ def _read(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> None:
     section.kinds = (kind, *words[1:])
     if len(section.rows) > 1 and section.rows[1].get(0):
         name = section.rows[1].get(0)
-        angle = (deck.root.orientations | draft.scope.orientations).get(key(name))
+        angles = deck.root.orientations
+        if draft.scope is not deck.root:
+            angles = angles | _turned(deck, draft.scope, section.rows[1])
+        angle = angles.get(key(name))
         if angle is None:
             section.rows[1].refuse(0, f"no orientation named {name!r}")
         if math.isnan(angle):
@@ -282,6 +286,17 @@ def _read(deck: Deck, draft: AttachedDraft, section: ConnectorDraft) -> None:
         if wrong:
             text = f"component {wrong[0]} of a connection {kind} has no spring, damper or stop"
             behavior.card.refuse(text)
+
+
+def _turned(deck: Deck, scope: Scope, row: Row) -> dict[str, float]:
+    """Orientations of a part in the assembly."""
+    placed = [i for i in deck.instances.values() if scope in (i.scope, deck.parts[i.part])]
+    angles = {instance.angle for instance in placed} or {0.0}
+    if len(angles) > 1:
+        text = "the instances of the part are turned by different angles"
+        row.refuse(0, text, "give the connectors in *ASSEMBLY")
+    found = {**(deck.parts[placed[0].part].orientations if placed else {}), **scope.orientations}
+    return {name: angle + sum(angles) for name, angle in found.items()}
 
 
 def _components(kinds: tuple[str, ...]) -> set[int]:
@@ -368,7 +383,8 @@ def connect(targets: Targets, draft: AttachedDraft) -> None:
             one.join(held)
             with suppress(Refused):
                 one.damp()
-            one.stop(f"{draft.name}-{draft.labels[place]}" if draft.labels else "")
+            name = f"{targets.at.prefix}{draft.name}-{draft.labels[place]}" if draft.labels else ""
+            one.stop(name)
             for at, component, drive, control in draft.controls:
                 node = targets.nodes(control) if at == place else None
                 if node is not None and not isinstance(node, str):
@@ -379,7 +395,8 @@ def _held(targets: Targets) -> Ints:
     """Nodes with supports."""
     deck = targets.deck
     drafts = [*deck.supports, *(d for step in deck.steps for d in step.supports)]
-    found = (targets.nodes(d) for d in drafts)
+    with targets.inside(targets.meshes.views[0]):
+        found = [targets.nodes(d) for d in drafts]
     parts = [targets.mesh.node_indices(n) for n in found if n is not None]
     return np.unique(np.concatenate([np.zeros(0, np.int64), *parts]))
 

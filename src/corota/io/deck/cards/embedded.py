@@ -63,22 +63,22 @@ def add_embedded(targets: Targets, drafts: list[EmbeddedDraft]) -> None:
     planar = np.array([c in PLANAR for c in _kinds(mesh)])
     for draft in drafts:
         card = draft.card
-        view = (views_in(targets.meshes.views, deck, card.scope) or targets.meshes.views)[0]
-        found = [
-            targets.sets.elements(view, d.target, d.row.where, card, d.row.text)
-            for d in draft.targets
-        ]
-        cells = [np.zeros(0, np.int64), *(f.cells for f in found if f is not None)]
-        inner = np.unique(np.concatenate(cells))
-        host = np.setdiff1d(np.flatnonzero(planar), inner)
-        if draft.host:
-            named = targets.sets.elements(view, draft.host, card.at("HOSTELSET"), card)
-            if named is None:
-                continue
-            host = np.setdiff1d(named.cells[planar[named.cells]], inner)
-        share = card.number("EXTERIORTOLERANCE", OUTSIDE, 0.0)
-        free = np.setdiff1d(nodes_of_cells(mesh, inner), nodes_of_cells(mesh, host))
-        _follow(targets, draft, free, host, share)
+        for view in views_in(targets.meshes.views, deck, card.scope):
+            found = [
+                targets.sets.elements(view, d.target, d.row.where, card, d.row.text)
+                for d in draft.targets
+            ]
+            cells = [np.zeros(0, np.int64), *(f.cells for f in found if f is not None)]
+            inner = np.unique(np.concatenate(cells))
+            host = np.setdiff1d(np.flatnonzero(planar), inner)
+            if draft.host:
+                named = targets.sets.elements(view, draft.host, card.at("HOSTELSET"), card)
+                if named is None:
+                    continue
+                host = np.setdiff1d(named.cells[planar[named.cells]], inner)
+            share = card.number("EXTERIORTOLERANCE", OUTSIDE, 0.0)
+            free = np.setdiff1d(nodes_of_cells(mesh, inner), nodes_of_cells(mesh, host))
+            _follow(targets, draft, free, host, share)
 
 
 def _follow(

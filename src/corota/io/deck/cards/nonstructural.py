@@ -67,16 +67,14 @@ def add_nonstructural(targets: Targets, drafts: list[NonstructuralDraft]) -> Non
     deck = targets.deck
     for draft in drafts:
         card = draft.row.card
-        cells: set[int] = set()
         for view in views_in(targets.meshes.views, deck, card.scope):
             found = targets.sets.elements(view, draft.elset, card.at("ELSET"), card)
-            cells |= set() if found is None else set(found.cells.tolist())
-        if not cells:
-            continue
-        try:
-            _add(targets, draft, np.array(sorted(cells), np.int64))
-        except InputError as error:
-            deck.error(card, card.where, error.message, text=draft.row.text)
+            if found is None or not len(found.cells):
+                continue
+            try:
+                _add(targets, draft, found.cells)
+            except InputError as error:
+                deck.error(card, card.where, error.message, text=draft.row.text)
 
 
 def _add(targets: Targets, draft: NonstructuralDraft, cells: Ints) -> None:

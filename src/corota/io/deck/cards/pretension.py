@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from corota.io.deck import numerals
-from corota.io.deck.build.mesh import views_in
+from corota.io.deck.build.mesh import View, turned, views_in
 from corota.io.deck.card import Card, Refused, nearest
 from corota.io.deck.deck import Deck
 from corota.io.deck.drafts import Draft, PretensionDraft
@@ -70,8 +70,8 @@ class PretensionBuilder:
 
     def __init__(self, deck: Deck, model: Model, sets: Sets) -> None:
         self.deck, self.model, self.sets = deck, model, sets
-        #: Each section with its nodes on the near and on the far side, and the normal.
-        self.cuts: list[tuple[PretensionDraft, Ints, Ints, Floats]] = []
+        #: Each section with its view, its nodes on the near and on the far side, and the normal.
+        self.cuts: list[tuple[PretensionDraft, View, Ints, Ints, Floats]] = []
 
     def cut(self) -> None:
         """Give the elements of each surface separate nodes there."""
@@ -85,9 +85,9 @@ class PretensionBuilder:
                         hint=nearest(draft.surface, self.model.mesh.edge_sets),
                     )
                     continue
-                self._cut(draft, self.model.mesh.edge_sets[name])
+                self._cut(draft, self.model.mesh.edge_sets[name], view)
 
-    def _cut(self, draft: PretensionDraft, edges: Ints) -> None:
+    def _cut(self, draft: PretensionDraft, edges: Ints, view: View) -> None:
         mesh = self.model.mesh
         nodes = np.asarray(mesh.edge_set_nodes(edges), np.int64)
         near = _near_cells(mesh, edges, nodes)
@@ -103,7 +103,7 @@ class PretensionBuilder:
             along = mesh.points[ends[1]] - mesh.points[ends[0]]
             normal += [along[1], -along[0]]  # the element is on the left
         if draft.normal is not None:
-            normal = np.array(draft.normal)
+            normal = turned(np.array(draft.normal), view.instance)
         fresh = mesh.n_nodes + np.arange(len(nodes))
         label = 10 ** len(str(int(mesh.node_labels.max())))
         mesh.points = np.concatenate([mesh.points, mesh.points[nodes]])
@@ -114,7 +114,7 @@ class PretensionBuilder:
             inside = near - mesh.offsets[number]
             inside = inside[(inside >= 0) & (inside < len(block))]
             block.nodes[inside] = new[block.nodes[inside]]
-        self.cuts.append((draft, fresh, nodes, normal / np.hypot(*normal)))
+        self.cuts.append((draft, view, fresh, nodes, normal / np.hypot(*normal)))
         self.deck.note(
             f"{draft.card.where}: the mesh is cut along {draft.surface}: its elements have nodes "
             f"from {label} on there, and the normal keeps its direction"
@@ -123,8 +123,8 @@ class PretensionBuilder:
     def twins(self) -> tuple[Ints, Ints]:
         """Nodes that the cuts made, and those from which they were separated."""
         none = np.zeros(0, np.int64)
-        near = [none, *(near for _, near, _, _ in self.cuts)]
-        far = [none, *(far for _, _, far, _ in self.cuts)]
+        near = [none, *(near for _, _, near, _, _ in self.cuts)]
+        far = [none, *(far for _, _, _, far, _ in self.cuts)]
         return np.concatenate(near), np.concatenate(far)
 
     def share_fields(self) -> None:
@@ -170,9 +170,10 @@ class PretensionBuilder:
     def join(self, targets: Targets) -> None:
         """Tie the faces of each cut to the node of its section."""
         angles, rotating = self._angles(), targets.rotating
-        for draft, near, far, normal in self.cuts:
+        for draft, view, near, far, normal in self.cuts:
             try:
-                node = targets.one_node(draft.node)
+                with targets.inside(view):
+                    node = targets.one_node(draft.node)
             except Refused:
                 continue
             where = draft.card.where

@@ -77,7 +77,7 @@ def rigid_body(deck: Deck, card: Card) -> None:
     if profile and (fixed or reference is not None):
         if not card.required("ANALYTICALSURFACE"):
             return
-        deck.carriers[key(card.value("ANALYTICALSURFACE"))] = (card, reference)
+        deck.carriers.append((card, reference))
     given = [p for p in ("NSET", "ELSET", "PINNSET", "TIENSET") if card.has(p)]
     if not alone and (not given or (card.has("NSET") and card.has("ELSET"))):
         card.refuse("either NSET= or ELSET= is expected")
