@@ -63,6 +63,35 @@ def test_snap_through_of_two_bars(through: ct.Results) -> None:
     assert (snap[passed:] == snap[passed]).all()
 
 
+def test_heat_before_the_push_does_not_turn_the_sense() -> None:
+    """Hot bars bulge without load, against the travel; the push through them begins there."""
+    model = snap_through()
+    for section in model.sections:
+        section.material = ct.Elastic(E=1000.0, nu=0.3, expansion=0.004)
+    model.stage("apex", axis=(0.0, -1.0))
+    model.fix("apex", x=0.0, y=None)
+    heat, push = ct.Static(), ct.Static(increments=90)
+    heat.temperature(1.0)
+    push.fix("apex", x=None, y=-3.7)
+    results = ct.solve(model, [heat, push], threads=1)
+
+    def load(s: float) -> float:
+        rise, long = 2.0 - s, np.hypot(10.0, 2.0)
+        return 1000.0 * (1.004 / np.hypot(10.0, rise) - 1.0 / long) * rise
+
+    top = minimize_scalar(lambda s: -load(s), bounds=(-0.2, 2.0), method="bounded")
+    wanted = {
+        "snap travel": top.x,
+        "snap load": -top.fun,
+        "return travel": 4.0 - top.x,
+        "return load": top.fun,
+        "switching travel": 2.0,
+        "insertion load": -top.fun,
+    }
+    for name, value in wanted.items():
+        assert last(results, name) == pytest.approx(value, rel=5e-3), name
+
+
 def test_limit_load_of_coarse_increments_is_that_of_a_parabola() -> None:
     coarse = pushed([ct.Static(increments=15)])
     top = minimize_scalar(lambda s: -bar_load(s), bounds=(0.0, 2.0), method="bounded")

@@ -273,9 +273,13 @@ def _inverse(value: float) -> float:
 
 
 def _sense(path: StagePath) -> float:
-    """Sign of the first travel."""
-    moved = path.travel[np.abs(path.travel) > NOISE * np.abs(path.travel).max(initial=0.0)]
-    return float(np.sign(moved[0])) if len(moved) else 1.0
+    """Sign of the first travel under load; without load, as by heat, the stage finds its place."""
+    moved, loads = np.diff(path.travel), np.abs(path.load[1:])
+    first = moved[
+        (loads > NOISE * loads.max(initial=0.0))
+        & (np.abs(moved) > NOISE * np.abs(path.travel).max(initial=0.0))
+    ]
+    return float(np.sign(first[0])) if len(first) else 1.0
 
 
 def _limits(path: StagePath) -> tuple[tuple[float, float], tuple[float, float]]:
