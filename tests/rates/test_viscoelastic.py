@@ -175,6 +175,35 @@ def test_a_ring_of_a_turned_part_relaxes() -> None:
     np.testing.assert_allclose(stress[..., 2], 0.0, atol=1e-9)
 
 
+@pytest.mark.parametrize("loaded_before", [True, False])
+@pytest.mark.parametrize(("g", "period"), [(0.9, 10.0), (0.9, 100.0), (0.5, 1.0), (0.99, 30.0)])
+def test_a_dead_load_stretches_in_default_increments(
+    g: float, period: float, loaded_before: bool
+) -> None:
+    """The compliance of a spring beside a Maxwell element, and what is left without the load.
+
+    ``J = (1 - g exp(-(1 - g) t / tau)) / (1 - g)``: the strain is not linear over an increment.
+    """
+    law = ct.Viscoelastic(ELASTIC, [(g, g, 1.0)])
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, 1, 1, "quad4"))
+    model.section("all", element="Q4", material=law)
+    model.fix("left", x=0.0, y=None)
+    model.fix([0], x=None, y=0.0)
+    off, rest = ct.Static(nlgeom=False), ct.Visco(nlgeom=False, period=period)
+    pull = [ct.Static(nlgeom=False)] * loaded_before + [ct.Visco(nlgeom=False, period=period)]
+    for step in pull:
+        step.force("right", x=0.001 * ELASTIC.E)
+    off.force("right", x=0.0)
+    results = ct.solve(model, [*pull, off, rest], threads=1)
+    stretch = results.history("U1", at="right")
+    last = [k for k, f in enumerate(results.frames) if f.step == len(pull)][-1]
+    crept = (1.0 - g * np.exp(-(1.0 - g) * period)) / (1.0 - g)
+    assert stretch[last] == pytest.approx(0.001 * crept, rel=1.5e-2)
+    left_over = (crept - 1.0) * np.exp(-(1.0 - g) * period)
+    assert stretch[-1] == pytest.approx(0.001 * left_over, abs=1e-5 * crept)
+    assert len(results.frames) < 120
+
+
 def test_rubber_at_large_stretch_in_a_body() -> None:
     """A strip of rubber at twice its length relaxes by its share, without any change of shape."""
     law = LAWS["incompressible"]

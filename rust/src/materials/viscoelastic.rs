@@ -19,12 +19,13 @@ use crate::base::small::Mat;
 use crate::base::{Real, shared};
 
 /// Members of the state: work of the stress, strain and stress (xx, yy, xy, zz), stress of the
-/// parent, then that of each term.
+/// parent, error of the strain of an increment, then the stress of each term.
 const WORK: usize = 0;
 const STRAIN: usize = 1;
 const STRESS: usize = 5;
 const PARENT: usize = 9;
-const TERMS: usize = 13;
+const ERROR: usize = 13;
+const TERMS: usize = 14;
 /// Iterations for the thickness strain in plane stress, longest step, and the step after which one
 /// linear correction is exact to round-off.
 const MAX_ITERATIONS: usize = 50;
@@ -75,6 +76,8 @@ struct Term {
 struct Relaxation {
     left: f64,
     added: f64,
+    /// Time of the increment over that of the term.
+    time: f64,
 }
 
 impl Relaxation {
@@ -86,7 +89,7 @@ impl Relaxation {
         } else {
             -(-x).exp_m1() / x
         };
-        Self { left, added }
+        Self { left, added, time: x }
     }
 }
 
@@ -226,7 +229,23 @@ impl Viscoelastic {
         sum
     }
 
+    /// Size of the strain at small strain of a stress.
+    #[inline(always)]
+    fn strain_of<T: Real>(&self, s: &[T; 4]) -> T {
+        let m = mean(s);
+        let mut square = s[2] * s[2].scale(2.0);
+        for i in [0, 1, 3] {
+            square += (s[i] - m) * (s[i] - m);
+        }
+        let round = (square.scale(1.5)).sqrt().scale(1.0 / (3.0 * self.shear));
+        if self.flat { round } else { round + m.abs().scale(1.0 / (3.0 * self.bulk)) }
+    }
+
     /// Write the state.
+    ///
+    /// The error is that of a strain which is not linear over the increment. Under a steady force
+    /// its rate is that of the terms, so an eighth of the change of their rate is how far it bends;
+    /// a strain that stays has none.
     #[inline(always)]
     fn keep<T: Real>(
         &self,
@@ -249,14 +268,18 @@ impl Viscoelastic {
                     state.set(STRESS + i, at.stress[i]);
                 }
                 state.set(WORK, work);
+                let mut bend = [T::zero(); 4];
                 for (n, (term, over)) in self.terms.iter().zip(relaxations).enumerate() {
                     let [g, k] = self.of_term(term);
                     let added = shares(&change, g * over.added, k * over.added);
                     for i in 0..4 {
                         let before: T = state.get(TERMS + 4 * n + i);
-                        state.set(TERMS + 4 * n + i, before.fma(T::real(over.left), added[i]));
+                        let after = before.fma(T::real(over.left), added[i]);
+                        state.set(TERMS + 4 * n + i, after);
+                        bend[i] += (after - before).scale(over.time / 8.0);
                     }
                 }
+                state.set(ERROR, self.strain_of(&bend).min(self.strain_of(&change)));
             },
         );
     }
@@ -446,6 +469,9 @@ impl Material for Viscoelastic {
             sum += self.energy_of(term, &own);
         }
         sum
+    }
+    fn creep_error_member(&self) -> Option<usize> {
+        Some(ERROR)
     }
     fn outputs(&self) -> &'static [&'static str] {
         &["CWORK"]

@@ -447,7 +447,8 @@ class Visco(Static):
         Largest error of the creep strain in an increment at any point: the difference between the
         creep by the stress at its start and that of the increment. Larger increments are cut back;
         after smaller errors they grow. By default 0.003 of the largest elastic strain of what
-        creeps, unless increments are fixed; 0 for no limit.
+        creeps, unless increments are fixed; 0 for no limit. Of viscoelastic materials it is how far
+        the strain bends within the increment, over the largest strain.
 
     Notes
     -----

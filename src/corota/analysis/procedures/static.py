@@ -25,6 +25,7 @@ from corota.analysis.procedures.carried_bodies import carried_bodies
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
 from corota.model.material_table import MaterialTable
+from corota.model.viscoelastic import Viscoelastic
 
 if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
@@ -131,7 +132,7 @@ class StaticStepper(NewtonStepper):
         self.remembers = any(block.section.material.remembers for block in blocks)
         #: Whether the error of creep is compared to elastic strains, and the largest of these.
         self.measures = self.creep_tolerance is None and any(
-            _soft(block.section.material) for block in blocks
+            _creeps(_law(block.section.material)) for block in blocks
         )
         self.elastic = 0.0
         self.creeps = step.lasting and loop.system.creeps
@@ -220,17 +221,25 @@ class StaticStepper(NewtonStepper):
         ), share
 
     def measure_creep(self) -> None:
-        """Find the elastic strain of the committed state, to which errors of creep are compared."""
+        """Find the strain of the committed state to which errors of creep are compared.
+
+        It is the elastic one, where stress relaxes the whole: a body that recovers has no stress.
+        """
         system = self.system
         fields, _ = system.recover(self.state.u)
         self.elastic = 0.0
         for block, found in zip(system.own_blocks, fields, strict=True):
-            if not (soft := _soft(block.section.material)):
+            material = _law(block.section.material)
+            if not _creeps(material):
                 continue
-            stress = found.values["S"]
-            mean = stress[..., :3].mean(axis=-1, keepdims=True)
-            square = np.sum((stress[..., :3] - mean) ** 2, axis=-1) + 2.0 * stress[..., 3] ** 2
-            strain = soft * math.sqrt(1.5 * float(square.max(initial=0.0)))
+            if isinstance(material, Viscoelastic):
+                strain = float(np.abs(found.values["E"]).max(initial=0.0))
+            else:
+                stress = found.values["S"]
+                mean = stress[..., :3].mean(axis=-1, keepdims=True)
+                square = np.sum((stress[..., :3] - mean) ** 2, axis=-1) + 2.0 * stress[..., 3] ** 2
+                soft = float(material.compliance()[0, 0])
+                strain = soft * math.sqrt(1.5 * float(square.max(initial=0.0)))
             self.elastic = max(self.elastic, strain)
         self.elastic = system.communicator.greatest(self.elastic)
 
@@ -582,10 +591,14 @@ class StaticStepper(NewtonStepper):
         raise ConvergenceError(at_limit(system, step, number, limit.factor, state))
 
 
-def _soft(material: Material) -> float:
-    """Inverse of Young's modulus of a material that creeps; 0 for others."""
-    first = material.first if isinstance(material, MaterialTable) else material
-    return float(first.compliance()[0, 0]) if material.creeps else 0.0
+def _law(material: Material) -> Material:
+    """The first material of a table."""
+    return material.first if isinstance(material, MaterialTable) else material
+
+
+def _creeps(material: Material) -> bool:
+    """Whether a material creeps, without end or until its stress has relaxed."""
+    return material.creeps or isinstance(material, Viscoelastic)
 
 
 def _continued(report: Report | None, before: int, how: str) -> Report | None:
