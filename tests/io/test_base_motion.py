@@ -110,8 +110,25 @@ def test_a_velocity_lasts_until_it_is_given_again(tmp_path: Path) -> None:
     assert frame.U[0, 0] == pytest.approx(0.1 * 1.0 + 0.1 * 2.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("kind", ["0., 0., .1, 1., .4, -2.", "0., 1., .2, 3."])
+def test_a_table_of_step_time_leaves_its_last_velocity(tmp_path: Path, kind: str) -> None:
+    """The record of one step ends within another: the support goes on at its last velocity."""
+    frame = solve(
+        tmp_path,
+        f"*AMPLITUDE, NAME=RUN\n{kind}\n*STEP\n*DYNAMIC, DIRECT\n0.01, 0.2\n"
+        "*BOUNDARY, TYPE=VELOCITY, AMPLITUDE=RUN\n1, 1, 1, 0.5\n*END STEP\n"
+        "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.3\n*END STEP\n",
+    ).frames[-1]
+    way, last = (0.05 + 0.05, 0.0) if kind.endswith("-2.") else (0.4, 3.0)
+    assert frame.U[0, 0] == pytest.approx(0.5 * (way + 0.3 * last), abs=1e-12)
+
+
 def test_velocities_in_static_steps_are_displacements_per_time(tmp_path: Path) -> None:
-    """They act at once and last, also across a frequency step; a table is integrated."""
+    """They act at once and last, also across a frequency step; a table is integrated.
+
+    One of step time ends with its step, as in Abaqus ("the prescribed condition remains constant
+    at the magnitude associated with the end of the previous step"); it went on in later ones.
+    """
     move = "*BOUNDARY, TYPE=VELOCITY{}\n1, 1, 1, {}\n"
     head = "*AMPLITUDE, NAME=RUN\n0., 0., 2., 4.\n*STEP\n*STATIC\n.5, .5\n"
     for option, value, ends in (("", "0.2", (0.1, 0.5, 0.9)), (", AMPLITUDE=RUN", "1.", ())):
@@ -119,8 +136,8 @@ def test_velocities_in_static_steps_are_displacements_per_time(tmp_path: Path) -
         text += "*STEP\n*STATIC\n2., 2.\n*END STEP\n*STEP\n*STATIC\n1., 1.\n"
         text += move.format("", "0.4") + "*END STEP\n"
         found = [f.U[0, 0] for f in solve(tmp_path, text).frames if f.step != 2 and f.time]
-        # The table grows to 4 at 2 and is 4 afterwards: t^2 up to 2.
-        expected = ends or (0.25, 4.0 + 0.5 * 4.0, 6.4)
+        # t^2 up to the end of the first step at 0.5, where the velocity is 1.
+        expected = ends or (0.25, 2.25, 2.65)
         assert found == pytest.approx(expected, abs=1e-12)
 
 

@@ -65,6 +65,10 @@ def base_motion(deck: Deck, model: Model, draft: Draft, amplitude: str, step: St
         if amplitude:
             table = model.amplitudes[amplitude]
             time, value = table.time, table.value
+            if not total:  # it ends with the step; its last velocity lasts
+                inside = time < step.times[1]
+                time = np.append(time[inside], step.times[1])
+                value = np.append(value[inside], table(step.times[1]))
         elif step.options.get("ramp"):
             time, value = np.array([0.0, step.times[1]]), np.array([0.0, 1.0])
         else:
