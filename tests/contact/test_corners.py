@@ -437,3 +437,64 @@ def test_a_hook_returns_past_a_coarse_catch() -> None:
     row = run(1813, limit=60, size=0.5)
     assert row["end"] == "done", row["why"]
     assert row["balance"] < 1e-8
+
+
+def wedge_under_corner(
+    element: str, method: str, friction: float, deformable: bool, way: float
+) -> ct.Model:
+    """A hard wedge on a spring, pushed under the sharp corner of a catch by .75 of height.
+
+    Its slope is 1/2 and has 12 edges, of which the corner passes five; the wedge moves by `way`.
+    """
+    cell = {"Q8": "quad8", "T6": "tri6", "T3": "tri3", "OPT": "tri3"}.get(element, "quad4")
+    first, last = (2.5, 0.5) if way > 0.0 else (0.5, 2.5)
+    bottom, end, top, begin = (
+        lambda t: (4.0 * t - 2.0, 0.0),
+        lambda t: (2.0, last * t),
+        lambda t: (4.0 * t - 2.0, first + (last - first) * t),
+        lambda t: (-2.0, first * t),
+    )
+    mesh = ct.mesh.mapped([bottom, end, top, begin], 12, 3, cell)
+    left = 2.3 if way > 0.0 else -3.0
+    if deformable:
+        catch = ct.mesh.rectangle(0.7, 2.4, 1, 2, cell, origin=(left, 0.6))
+        mesh = ct.mesh.assembly(wedge=mesh, catch=catch)
+    name = "wedge." if deformable else ""
+    ref = ct.mesh.add_node(mesh, 0.0, 0.0, name="ref")
+    solids = mesh.n_cells
+    mesh.cells.append(ct.Cells("point1", np.array([[ref]]), np.array([solids + 1])))
+    model = ct.Model(mesh)
+    model.section(list(range(solids)), element=element, material=ct.Elastic(E=1e7, nu=0.3))
+    model.spring([solids], 100.0, "y")
+    model.rigid(f"{name}bottom", ref)
+    model.fix("ref", x=way, y=None, rotation=0.0)
+    points = [(left, 0.6), (left, 3.0), (left + 0.7, 3.0), (left + 0.7, 0.6)]
+    sides: Any = ct.RigidCurve.polyline(points, closed=True)
+    if deformable:
+        model.fix("catch.top")
+        sides = ["catch.left", "catch.bottom", "catch.right"]
+    model.contact(f"{name}top", sides, method=method, friction=friction, name="catch")
+    return model
+
+
+@pytest.mark.parametrize(("way", "increments"), [(2.0, None), (-2.0, None), (2.0, 20)])
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("deformable", [False, True])
+@pytest.mark.parametrize("element", ["Q4I", "Q4D", "Q8", "T3", "T6", "OPT"])
+@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+def test_a_wedge_slides_under_a_corner_that_passes_its_nodes(
+    method: str,
+    element: str,
+    deformable: bool,
+    friction: float,
+    way: float,
+    increments: int | None,
+) -> None:
+    """By hand: the spring gives the normal force, slope and friction the force along."""
+    model = wedge_under_corner(element, method, friction, deformable, way)
+    step = ct.Static() if increments is None else ct.Static(increments=increments)
+    results = ct.solve(model, step, threads=1)
+    ref = int(model.mesh.nodes_of("ref")[0])
+    along = 37.5 * way * (0.5 + friction) / (1.0 - 0.5 * friction)
+    assert results.frames[-1].RF[ref, 0] == pytest.approx(along, rel=1e-3)
+    assert results.frames[-1].U[ref, 1] == pytest.approx(-0.75, rel=1e-3)

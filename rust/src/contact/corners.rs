@@ -35,11 +35,11 @@ pub const LEAST_TURN: f64 = 0.872_664_625_997_164_8;
 pub const LEAST_TURN_AT_CORNERS: f64 = 0.349_065_850_398_865_9;
 /// Tilt of an edge out of the cone between the normals of a corner's sides, with which the corner
 /// still meets it [rad]: edges dent. Beyond it a side of the corner meets the edge.
-const DENT: f64 = 0.35;
+pub const DENT: f64 = 0.35;
 /// And a further tilt up to which it still meets the edge that it met before [rad]. As the tilt of an
 /// edge passes `DENT`, the corner may lie inside: in force on one side of this angle and absent on the
 /// other, with no equilibrium on either.
-const KEPT: f64 = 0.175;
+pub const KEPT: f64 = 0.175;
 /// Part of the last edge of a slave, from its end on, where the end of a master is no constraint of
 /// its own: the slave's end is there, and both would be one constraint twice.
 const SAME_END: f64 = 0.1;
@@ -562,6 +562,16 @@ pub fn round(surface: &Surface, x: &[[f64; 3]]) -> Vec<bool> {
         vertex.members().for_each(|j| round[j] = true);
     }
     round
+}
+
+/// The members beyond the sharp corners at both ends of each member of a master.
+pub fn across_corners(master: &Surface, x: &[[f64; 3]]) -> Vec<[Option<usize>; 2]> {
+    let mut across = vec![[None; 2]; master.len()];
+    for corner in sharp(master, x, LEAST_TURN, false) {
+        let (Some(i), Some(j)) = (corner.before, corner.behind) else { continue };
+        (across[i][1], across[j][0]) = (Some(j), Some(i));
+    }
+    across
 }
 
 /// Corners at which the boundary, with the body on its left, turns left sharply, and its ends.

@@ -58,12 +58,12 @@ impl Contact {
         distances: Distances,
         corners: bool,
     ) -> Self {
-        let mut sides = Sides::new(x, slave, master, distances);
+        let mut sides = Sides::new(x, slave, master, distances, corners && !entry.joins);
         let method = (entry.new)(&sides, x);
         sides.set_depth(x, entry.joins, &method.owners(&sides.slave));
         let n = method.places(&sides.slave).len();
         let mut first = n;
-        let sides_with_corners: &[bool] = match corners && !entry.joins {
+        let sides_with_corners: &[bool] = match sides.corners {
             false => &[],
             true if entry.integrates && !sides.itself => &[false, true],
             true => &[false],

@@ -26,6 +26,8 @@ pub struct Sides {
     pub master: Surface,
     /// Whether the master is the slave.
     pub itself: bool,
+    /// Whether sharp corners have constraints of their own.
+    pub corners: bool,
     /// Nodes at the tips of notches of a boundary that meets itself.
     pub notches: HashSet<u32>,
     pub distances: Distances,
@@ -51,6 +53,7 @@ impl Sides {
         slave: Slave,
         master: Option<Surface>,
         distances: Distances,
+        corners: bool,
     ) -> Self {
         let itself = master.is_none();
         let boundary = itself.then(|| {
@@ -63,6 +66,7 @@ impl Sides {
             notches: if itself { slave.notches(x) } else { HashSet::new() },
             master: master.unwrap_or_else(|| Surface::Edges(slave.edges.clone())),
             itself,
+            corners,
             distances,
             reference: slave.edges.iter().map(|e| e.place(x)).collect(),
             depth: Vec::new(),

@@ -9,8 +9,14 @@
 //! nodes and be lifted by each in turn. Its deepest point is therefore measured against the facet
 //! that it faces, too, by a constraint of the facet: a round that ends in a flat may press on a
 //! facet while both of its nodes lie on the flat.
+//!
+//! A sharp corner of the master that lies in a slave edge has a constraint of its own. Of the nodes
+//! of this edge none meets a side of the corner before the edge does, unless the edge is about
+//! parallel to that side: the corner is left to its constraint. Otherwise a node that the corner is
+//! about to pass would be caught at its side.
 // SPDX-License-Identifier: BSD-3-Clause
 
+use super::super::corners::{DENT, KEPT, across_corners};
 use super::super::curve::{Curve, Vec2, dot, outward, sub, unit};
 use super::super::master::{Hit, Master};
 use super::super::search::{self, Candidate, Item, each};
@@ -143,6 +149,10 @@ pub struct NodeToSegment {
     /// Slave edge of each node with its parameter there, and that of the node behind.
     from: Vec<(usize, f64)>,
     to: Vec<f64>,
+    /// Slave edge that ends at each node, or goes on behind it, with the parameter of the node.
+    until: Vec<(usize, f64)>,
+    /// The masters beyond the sharp corners at both ends of each master, if they have constraints.
+    across: Vec<[Option<usize>; 2]>,
     /// Constraint of the facet behind each slave node, after those of the nodes, where it has one.
     of_facet: Vec<Option<usize>>,
     /// Master of each node: of the last evaluation, and of the last commit.
@@ -276,12 +286,15 @@ impl NodeToSegment {
         let n = slave.nodes.len();
         let (mut next, mut length, mut radius) = (vec![-1; n], vec![0.0; n], Vec::new());
         let (mut from, mut to) = (vec![(0, 1.0); n], vec![1.0; n]);
+        let mut until = vec![(0, -1.0); n];
         for (i, k) in slave.constraints.iter().enumerate() {
             // The edge that begins at a node, rather than the one that ends there.
             from[k[1]] = if from[k[1]].1 < 1.0 { from[k[1]] } else { (i, 1.0) };
             from[k[0]] = (i, -1.0);
+            until[k[0]] = if until[k[0]].1 > -1.0 { until[k[0]] } else { (i, -1.0) };
+            until[k[1]] = (i, 1.0);
             if k[2] != usize::MAX {
-                (from[k[2]], to[k[0]]) = ((i, 0.0), 0.0);
+                (from[k[2]], until[k[2]], to[k[0]]) = ((i, 0.0), (i, 0.0), 0.0);
             }
         }
         if !sides.itself {
@@ -306,7 +319,9 @@ impl NodeToSegment {
                 })
             })
             .collect();
-        Self { next, length, radius, from, to, of_facet, held: [vec![None; n], vec![None; n]] }
+        let across = if sides.corners { across_corners(&sides.master, x) } else { Vec::new() };
+        let held = [vec![None; n], vec![None; n]];
+        Self { next, length, radius, from, to, until, across, of_facet, held }
     }
 
     /// Whether the facet behind a slave node meets a master as a round.
@@ -334,6 +349,10 @@ impl NodeToSegment {
         });
         let bounds = Bounds { reach: sides.distances.reach, depth: sides.depth[k] };
         let found = choose([p[0], p[1]], normal, &shapes, last, bounds);
+        let found = found.filter(|&pair| {
+            let j = sides.candidates()[pair].1;
+            !self.is_left_to_corner(sides, k, j, x, held == Some(j))
+        });
         let gap_of = |pair: usize| {
             let shape = &shapes.iter().find(|s| s.0 == pair).expect("a candidate").1;
             shape.closest([p[0], p[1]]).gap
@@ -364,6 +383,43 @@ impl NodeToSegment {
             // What meets the round says the same of node and facet.
             _ => (Some((round, true)), None),
         }
+    }
+
+    /// Whether the side `j` of a sharp corner that a node would meet is no matter of the node: the
+    /// corner lies in an edge beside it, which is inclined to the side and would go through the
+    /// corner before. A side that `held` the node does so at larger angles.
+    fn is_left_to_corner(
+        &self,
+        sides: &Sides,
+        k: usize,
+        j: usize,
+        x: &[[f64; 3]],
+        held: bool,
+    ) -> bool {
+        let Some(ends) = self.across.get(j).filter(|ends| ends.iter().any(Option::is_some)) else {
+            return false;
+        };
+        let (p, side) = (x[sides.slave.nodes[k] as usize], sides.master.place(j, x));
+        let hit = side.closest([p[0], p[1]]);
+        let which = usize::from(hit.r > 0.0);
+        let Some(other) = ends[which] else { return false };
+        let (corner, along) = (side.end(which), 2.0 * which as f64 - 1.0);
+        let m = side.normal(&hit);
+        // Angle of a normal from that of the side towards that of the side beyond the corner.
+        let angle = |n: Vec2<f64>| (along * (m[0] * n[1] - m[1] * n[0])).atan2(dot(m, n));
+        let beyond = angle(sides.master.place(other, x).normal_at(-along));
+        let least = if held { DENT + KEPT } else { DENT };
+        let edges = [self.until[k], self.from[k]].map(|(i, r)| (sides.slave.edges[i].place(x), r));
+        let inclined = edges.iter().all(|(edge, r)| {
+            let n = unit(outward(edge.slope(*r)));
+            (least..beyond + DENT).contains(&angle([-n[0], -n[1]]))
+        });
+        let lies_in = |edge: &Curve<f64>| {
+            let r = edge.foot(corner);
+            let deep = -dot(sub(corner, edge.extended(r)), unit(outward(edge.slope(r))));
+            r.abs() <= 1.0 && deep <= sides.depth[k]
+        };
+        inclined && edges.iter().any(|(edge, _)| lies_in(edge))
     }
 
     /// A facet that meets a round, by the constraint of its first node or its own (`besides`).
