@@ -219,12 +219,11 @@ class ContactTerm(Term):
         scheme = getattr(step, "scheme", "")
         self.persistent = scheme == "energy_momentum"
         self._check_pairs(step, scheme)
-        ramps = bool(getattr(step, "ramp", False))
-        #: Whether coefficients of friction change with the loads of the step.
-        self.rubs = self.damps and ramps
+        #: Whether loads of the step grow, and with them what changes in coefficients of friction.
+        self.rubs = self.damps and bool(getattr(step, "ramp", False))
         for pair, (p, _) in zip(self.pairs, self.parts(self.committed), strict=True):
             pair.rub(self.number, self._changed(0.0), p)
-        self._enter(scheme == "central_difference", ramps)
+        self._enter(scheme == "central_difference")
         if len(self.nodal):
             self._damp()
         held = self.system.constrained.copy()
@@ -233,22 +232,6 @@ class ContactTerm(Term):
             if held[relation.masters].all():
                 held[relation.dependent] = True
         constrained = self.system.by_node(held.astype(float))
-        for pair in self.pairs:
-            pair.fixed = pair.start = None
-            pair.hold(constrained, self.persistent)
-            if pair.law is not None and pair.active and pair.entered == self.number:
-                pair.measure(self.positions(self.u))
-            if self.number == 1 and pair.guided_ends.any():
-                mesh = self.system.model.mesh
-                note = guided_round_note(pair, mesh.points, mesh.node_labels)
-                self.notes += [note] if note else []
-        if self.persistent:
-            x = self.positions(self.u)
-            for pair in self.pairs:
-                if not pair.tied:
-                    pair.start = pair.evaluate(x, x, self.system.nlgeom).parts
-        if self.damps and self.opens:
-            self._pressure = self._pressures()
         self.law_share = 1.0
         if scheme:
             from corota.model.schemes import SCHEMES
@@ -256,9 +239,21 @@ class ContactTerm(Term):
             # Laws of pressure are weighed as the scheme weighs forces.
             if scheme in SCHEMES:
                 self.law_share -= SCHEMES[scheme](step.alpha, step.rho_inf).alpha_f  # type: ignore[attr-defined]
+        x, mesh = self.positions(self.u), self.system.model.mesh
         for pair in self.pairs:
+            pair.fixed = pair.start = None
             pair.end_share = 1.5 - self.law_share
             pair.share = 1.0 if pair.law is None else self.law_share
+            pair.hold(constrained, self.persistent)
+            if pair.law is not None and pair.active and pair.entered == self.number:
+                pair.measure(x)
+            if self.number == 1 and pair.guided_ends.any():
+                note = guided_round_note(pair, mesh.points, mesh.node_labels)
+                self.notes += [note] if note else []
+            if self.persistent and not pair.tied:
+                pair.start = pair.evaluate(x, x, self.system.nlgeom).parts
+        if self.damps and self.opens:
+            self._pressure = self._pressures()
         self._keep_law_force()
 
     def _check_pairs(self, step: Step, scheme: str) -> None:
@@ -282,22 +277,22 @@ class ContactTerm(Term):
             if why:
                 raise UnsupportedError(f"contact pair {pair.name!r}: {why}", pair.item.where)
 
-    def _enter(self, explicit: bool, ramp: bool) -> None:
+    def _enter(self, explicit: bool) -> None:
         """Let pairs begin and end with the step; what those that end pressed fades."""
         self.fading = np.zeros(0)
-        for pair, (p, q) in zip(self.pairs, self.parts(self.committed), strict=True):
+        for k, (pair, (p, q)) in enumerate(
+            zip(self.pairs, self.parts(self.committed), strict=True)
+        ):
             steps = None if isinstance(pair.item, Tie) else pair.item.steps
             before, pair.active = pair.active, steps is None or self.number in steps
             if pair.active and (self.number == 1 or not before):
                 pair.entered = self.number
                 self._start_pair(pair, self.positions(self.u), explicit)
-            elif before and not pair.active and self.at is not None and (p.any() or q.any()):
-                terms = self.at.acting[self.pairs.index(pair)]
+            elif before and not pair.active and self.rubs and self.at is not None:
                 force = np.zeros(self.system.n_dofs)
-                pair.add_forces(terms, p, q, force)
-                fading = self.system.at_nodes(force)
-                if self.damps and ramp:
-                    self.fading = self.fading + fading if len(self.fading) else fading
+                pair.add_forces(self.at.acting[k], p, q, force)
+                left = self.fading if len(self.fading) else 0.0
+                self.fading = self.system.at_nodes(force) + left
 
     def _start_pair(self, pair: Pair, x: Floats, explicit: bool) -> None:
         """Check the initial gaps of a pair: report, adjust or ramp them."""

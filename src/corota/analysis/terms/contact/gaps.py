@@ -53,35 +53,21 @@ PATIENCE = 8
 
 @dataclass
 class Terms:
-    """Gaps and slips of one pair at a state.
+    """Gaps and slips of one pair at a state: of its n constraints, each the sum of some terms."""
 
-    Parameters
-    ----------
-    gap, slip, area : ndarray, shape (k,)
-        Weighted gap and slip of each constraint [length^3], covered area [length^2].
-    constraint, pair : ndarray of int, shape (m,)
-        Constraint of each term, and candidate pair of the core.
-    variables : ndarray of int, shape (m, v)
-        ``3 node + component``, -1 for none.
-    gap_gradient, slip_gradient : ndarray, shape (m, v)
-    parts : tuple of ndarray, shape (k,)
-        Gap and area of each node before neighbors share constraints.
-    bare : Terms or None
-        Unmodified gaps and areas, where a condition on rates has changed them.
-    between : Terms or None
-        Gradients along which tractions act that are those of an increment, not of its end.
-    """
-
-    gap: Floats
-    slip: Floats
-    area: Floats
-    constraint: Ints
-    pair: Ints
-    variables: Ints
-    gap_gradient: Floats
+    gap: Floats  # weighted gap of each constraint [length^3], shape (n,)
+    slip: Floats  # the same of the slip
+    area: Floats  # that is covered [length^2], shape (n,)
+    constraint: Ints  # of each term, shape (m,)
+    pair: Ints  # candidate pair of the core, shape (m,)
+    variables: Ints  # ``3 node + component``, -1 for none, shape (m, v)
+    gap_gradient: Floats  # shape (m, v)
     slip_gradient: Floats
+    #: Gap and area of each node before neighbors share constraints, shapes (n,).
     parts: tuple[Floats, Floats]
+    #: Unmodified gaps and areas, where a condition on rates has changed them.
     bare: Terms | None = None
+    #: Gradients along which tractions act that are those of an increment, not of its end.
     between: Terms | None = None
 
     @property
@@ -92,43 +78,24 @@ class Terms:
 
 @dataclass(eq=False)
 class ContactState:
-    """All pairs at a state; none by default.
-
-    Parameters
-    ----------
-    terms : list of Terms
-    force : ndarray, shape (n_dofs,)
-        Of the pairs on the nodes, along the axes of the nodes.
-    size : ndarray, shape (n_dofs,)
-        Sum of sizes of its parts.
-    multipliers : ndarray, shape (n_multipliers,)
-    damping : ndarray, shape (n_dofs,), or None
-        Stabilizing stiffness of this increment.
-    of_end : ndarray, shape (n_dofs,), or None
-        Force at the end, where a scheme weighs that of pressure laws between both ends.
-    states : list of ndarray
-        Of the constraints, once committed.
-    acting : list of Terms
-        Along whose gradients the forces acted, once committed.
-    where : ndarray, shape (n_nodes, 3)
-        Positions at which they did, once committed.
-    settled : list of ndarray
-        States at a point of a path, once they are computed.
-    time : float
-        Step time.
-    """
+    """All pairs at a state; none by default."""
 
     terms: list[Terms] = field(default_factory=list)
+    #: Of the pairs on the nodes, along the axes of the nodes, and the sum of the sizes of its
+    #: parts, shapes (n_dofs,).
     force: Floats = field(default_factory=partial(np.zeros, 0))
     size: Floats = field(default_factory=partial(np.zeros, 0))
-    multipliers: Floats = field(default_factory=partial(np.zeros, 0))
-    damping: Floats | None = None
+    multipliers: Floats = field(default_factory=partial(np.zeros, 0))  # shape (n_multipliers,)
+    damping: Floats | None = None  # stabilizing stiffness of this increment, shape (n_dofs,)
+    #: Force at the end, where a scheme weighs that of pressure laws between both ends.
     of_end: Floats | None = None
+    #: Once committed: states of the constraints, terms along whose gradients the forces acted, and
+    #: the positions at which they did, shape (n_nodes, 3).
     states: list[NDArray[np.int8]] = field(default_factory=list)
     acting: list[Terms] = field(default_factory=list)
     where: Floats | None = None
-    settled: list[NDArray[np.int8]] = field(default_factory=list)
-    time: float = 0.0
+    settled: list[NDArray[np.int8]] = field(default_factory=list)  # states at a point of a path
+    time: float = 0.0  # of the step
 
     @property
     def force_at_end(self) -> Floats:
@@ -138,30 +105,14 @@ class ContactState:
 
 @dataclass
 class Kink:
-    """A place where contact forces jump, against the motion across it.
+    """A place where contact forces jump, against the motion across it."""
 
-    Parameters
-    ----------
-    normal : ndarray, shape (n_dofs,)
-        Gradient of the distance across the kink, positive on the far side.
-    move : ndarray, shape (n_dofs,)
-        Translations that go across, a motion of distance 1.
-    jump : ndarray, shape (n_dofs,)
-        Contact force of the far side less that of the near one.
-    width : float
-        Search distance [length].
-    distance : float
-        From the displacement judged last to the kink [length].
-    share : float
-        Part of the jump that is carried, from 0 on the near side to 1 on the far one.
-    """
-
-    normal: Floats
-    move: Floats
-    jump: Floats
-    width: float = 0.0
-    distance: float = 0.0
-    share: float = 0.0
+    normal: Floats  # gradient of the distance across it, positive on the far side, shape (n_dofs,)
+    move: Floats  # translations that go across, a motion of distance 1, shape (n_dofs,)
+    jump: Floats  # contact force of the far side less that of the near one, shape (n_dofs,)
+    width: float = 0.0  # search distance [length]
+    distance: float = 0.0  # from the displacement judged last to the kink [length]
+    share: float = 0.0  # of the jump that is carried, from 0 on the near side to 1 on the far one
     far: list[Terms] = field(default_factory=list)  # of the pairs on the far side
     #: Displacement and share from which a correction was made, and the corrections of both.
     base: tuple[Floats, float, Floats, float] | None = None
@@ -196,22 +147,12 @@ def mean(weighted: Floats, area: Floats, full: Floats, alone: Floats | float = 0
 
 @dataclass
 class RightHandSides:
-    """Right-hand sides of one linearization, one per column.
+    """Right-hand sides of one linearization, one per column."""
 
-    Parameters
-    ----------
-    force, constrained : ndarray, shape (n_dofs, k)
-        Of equilibrium, and prescribed changes at constrained dofs.
-    own : ndarray, shape (k,)
-        Share of the contact residual: 1 in a Newton correction, 0 in a rate.
-    rows : ndarray, shape (n_multipliers, k), or None
-        Added to the rows of the multipliers.
-    """
-
-    force: Floats
-    constrained: Floats
-    own: Floats
-    rows: Floats | None = None
+    force: Floats  # of equilibrium, shape (n_dofs, k)
+    constrained: Floats  # prescribed changes at constrained dofs, shape (n_dofs, k)
+    own: Floats  # share of the contact residual: 1 in a Newton correction, 0 in a rate, shape (k,)
+    rows: Floats | None = None  # added to those of the multipliers, shape (n_multipliers, k)
 
 
 def sticking(states: States) -> States:

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota._core import CLOSED, CORNER, OPEN, STEEP, TURN
+from corota._core import CLOSED, OPEN, STEEP, TURN
+from corota.analysis.terms.contact.contact import few
 from corota.analysis.terms.contact.gaps import SAME, WAITED, covered, mean
 from corota.analysis.terms.contact.setup import (
-    FLAT,
     alone,
     blunt_turns,
     chords,
@@ -215,11 +215,10 @@ def explanation(problem: ContactEquations, at: Evaluation | None) -> str:
     ]
     flipping.sort(key=lambda item: -item[0])
     if flipping:
-        names = ", ".join(str(problem.term.label(q, j)) for _, q, j in flipping[:5])
+        names = few([problem.term.label(q, j) for _, q, j in flipping])
         said += (
             "; the contact state (open, stick or slip) kept changing at "
-            f"node{'s' if len(flipping) > 1 else ''} {names}"
-            f"{', ...' if len(flipping) > 5 else ''} of pair {flipping[0][1].name!r}"
+            f"node{'s' if len(flipping) > 1 else ''} {names} of pair {flipping[0][1].name!r}"
         )
     problem.term.overcome = problem.term.overcome or _overcome(problem, at)
     if way := gives_way(problem.term):
@@ -300,24 +299,18 @@ def guided_round_note(pair: Pair, points: Floats, labels: Ints) -> str:
         return ""
     if (pair.slave.nodes[:, 2] >= 0).any():
         return ""
-    left, right = pair.beside
+    turns = blunt_turns(points, pair.slave)
     for k in np.flatnonzero(pair.guided_ends):
-        way = right if left[k] < 0 else left
-        chain = [int(k), int(way[k])]
-        chain.append(int(way[chain[1]]))
-        if min(chain) < 0:
-            continue
-        a, b, c = points[pair.nodes[chain], :2]
-        first, second = b - a, c - b
-        turn = abs(math.atan2(first[0] * second[1] - first[1] * second[0], float(first @ second)))
-        if FLAT < turn < CORNER:
-            depth = math.hypot(*first) * turn / 12.0
+        beside = max(side[k] for side in pair.beside)
+        end, next_one = pair.nodes[[k, beside]].tolist()
+        if beside >= 0 and next_one in turns:
+            depth = math.dist(points[end], points[next_one]) * turns[next_one] / 12.0
             return (
                 f"contact pair {pair.name!r}: the slave surface is round, has friction, and a "
-                f"support guides its end at node {labels[pair.nodes[k]]}, along which the other "
-                f"side may move: its last edge keeps a mean gap, which is {depth:.3g} deeper than "
-                "those of its nodes. Where this counts beside the deformation, pressures there are "
-                "wrong: take method='node_to_segment', quadratic elements or the whole round"
+                f"support guides its end at node {labels[end]}, along which the other side may "
+                f"move: its last edge keeps a mean gap, which is {depth:.3g} deeper than those of "
+                "its nodes. Where this counts beside the deformation, pressures there are wrong: "
+                "take method='node_to_segment', quadratic elements or the whole round"
             )
     return ""
 
@@ -356,11 +349,11 @@ def start_notes(
         half = float(np.max(pair.slave.half, initial=0.0))
         lines = f" (the surface is {half:.4g} away from the line)" if half else ""
         notes.append(
-            f"contact pair {pair.name!r}: the surfaces overlap by up to {overlap:.4g} at node "
-            f"{labels[pair.nodes[deepest]]} at the start{lines}; this {how}"
+            f"the surfaces overlap by up to {overlap:.4g} at node {labels[pair.nodes[deepest]]} at "
+            f"the start{lines}; this {how}"
         )
         notes.append(facet_note(pair, mesh.points, overlap))
-    return [note for note in notes if note]
+    return [f"contact pair {pair.name!r}: {note}" for note in notes if note]
 
 
 def fillet_note(pair: Pair) -> str:
@@ -380,11 +373,11 @@ def fillet_note(pair: Pair) -> str:
     if edge <= STEEP * radius:
         return ""
     return (
-        f"contact pair {pair.item.name!r}: the smallest round corner of the rigid curve has the "
-        f"radius {radius:.4g}, {radius / edge:.2g} slave edges (mean {edge:.4g}); the force "
-        "will be jagged while nodes pass it one by one. Use method='node_to_segment' (TYPE=NODE "
-        "TO SURFACE), which measures such rounds against edges; or use slave edges of at most "
-        f"{STEEP * radius:.3g} where they meet it, or a larger radius"
+        f"the smallest round corner of the rigid curve has the radius {radius:.4g}, "
+        f"{radius / edge:.2g} slave edges (mean {edge:.4g}); the force will be jagged while nodes "
+        "pass it one by one. Use method='node_to_segment' (TYPE=NODE TO SURFACE), which measures "
+        f"such rounds against edges; or use slave edges of at most {STEEP * radius:.3g} where they "
+        "meet it, or a larger radius"
     )
 
 
@@ -397,12 +390,10 @@ def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
         return ""
     sharp = sharp_corners(points, pair.master.nodes[:, :2]) if pair.law is not None else []
     if sharp:
-        named = ", ".join(str(labels[k]) for k in sharp[:3]) + ", ..." * (len(sharp) > 3)
         return (
-            f"contact pair {pair.item.name!r}: the master has sharp corners (node {named}). A "
-            "pressure law acts on areas, so a corner that presses alone sinks in between slave "
-            "nodes and wedges: where the other body meets a corner, make this surface the slave, "
-            "or use hard contact"
+            f"the master has sharp corners (node {few(labels[sharp], 3)}). A pressure law acts on "
+            "areas, so a corner that presses alone sinks in between slave nodes and wedges: where "
+            "the other body meets a corner, make this surface the slave, or use hard contact"
         )
     if getattr(pair.item, "smooth", True):
         return ""
@@ -411,10 +402,10 @@ def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
     if turn <= TURN:
         return ""
     return (
-        f"contact pair {pair.item.name!r}: the master turns by {math.degrees(turn):.0f} degrees "
-        f"from edge to edge at node {labels[node]}; the force will jump when contact passes such "
-        "nodes. Where the boundary should be round, treat it as a curve (smooth=True, SMOOTH of "
-        "*CONTACT PAIR) or refine its edges"
+        f"the master turns by {math.degrees(turn):.0f} degrees from edge to edge at node "
+        f"{labels[node]}; the force will jump when contact passes such nodes. Where the boundary "
+        "should be round, treat it as a curve (smooth=True, SMOOTH of *CONTACT PAIR) or refine its "
+        "edges"
     )
 
 
@@ -436,10 +427,9 @@ def facet_note(pair: Pair, points: Floats, overlap: float) -> str:
     if height <= NAMED * overlap:
         return ""
     return (
-        f"contact pair {pair.item.name!r}: edges of the master lie up to {height:.3g} inside its "
-        f"rounds, {height / overlap:.2g} of the overlap, and count as they are: pressures are "
-        "uneven, and the force is off by this order. Take mortar contact, which counts them as "
-        "arcs, or shorter edges"
+        f"edges of the master lie up to {height:.3g} inside its rounds, {height / overlap:.2g} of "
+        "the overlap, and count as they are: pressures are uneven, and the force is off by this "
+        "order. Take mortar contact, which counts them as arcs, or shorter edges"
     )
 
 
@@ -476,11 +466,10 @@ def partly_covered_note(pair: Pair, area: Floats, x: Floats, labels: Ints) -> st
     if abs(excess) <= NAMED * exact:
         return ""
     return (
-        f"contact pair {pair.name!r}: the master ends within slave edges (node "
-        f"{', '.join(named)}). With node_to_segment a pressure law acts on the whole area of each "
-        f"slave node: the layer is {abs(excess) / exact:.0%} too "
-        f"{'stiff' if excess > 0.0 else 'soft'} at the start. Exchange slave and master, or use "
-        "method='mortar'"
+        f"the master ends within slave edges (node {', '.join(named)}). With node_to_segment a "
+        "pressure law acts on the whole area of each slave node: the layer is "
+        f"{abs(excess) / exact:.0%} too {'stiff' if excess > 0.0 else 'soft'} at the start. "
+        "Exchange slave and master, or use method='mortar'"
     )
 
 

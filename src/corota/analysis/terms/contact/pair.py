@@ -53,26 +53,14 @@ UNSEEN = 0.5
 
 @dataclass
 class Linearization:
-    """What linearized constraints add to the matrix of the bodies; see :class:`Coupling`.
+    """What linearized constraints add to the matrix of the bodies; see :class:`Coupling`."""
 
-    Parameters
-    ----------
-    diagonal, rhs : ndarray, shape (n_multipliers,)
-        Of the rows of the multipliers.
-    force : ndarray, shape (n_dofs,)
-        Of tractions that are known after the correction.
-    rows, follow : list of Triplets
-        Gradients of what is closed and sticks, and what makes them unsymmetric.
-    expected : int
-        Negative pivots that the constraints have.
-    """
-
-    diagonal: Floats
+    diagonal: Floats  # of the rows of the multipliers, shape (n_multipliers,)
     rhs: Floats
-    force: Floats
-    rows: list[Triplets] = field(default_factory=list)
-    follow: list[Triplets] = field(default_factory=list)
-    expected: int = 0
+    force: Floats  # of tractions that are known after the correction, shape (n_dofs,)
+    rows: list[Triplets] = field(default_factory=list)  # gradients of what is closed and sticks
+    follow: list[Triplets] = field(default_factory=list)  # what makes them unsymmetric
+    expected: int = 0  # negative pivots that the constraints have
 
 
 class Pair:
@@ -140,11 +128,11 @@ class Pair:
         self.width = self.n * (2 if self.two else 1)
         self.first = 0
         self.reference = np.column_stack([system.model.mesh.points, np.zeros(len(system.per_node))])
-        self.fixed: Terms | None = None  # of geometrically linear steps
-        self.fixed_offset: Floats = np.zeros(0)  # the offset that they were made with
+        #: Of geometrically linear steps, and the offset that they were made with.
+        self.fixed: tuple[Terms, Floats] | None = None
         self.area = self.full.copy()  # areas of pressure laws, kept within an increment
         #: Constraints that were closed in the committed state.
-        self.closed: NDArray[np.bool_] = np.zeros(self.n, bool)
+        self.closed: Bools = np.zeros(self.n, bool)
         #: Gaps and areas of the committed state where gaps must not fall below those.
         self.start: tuple[Floats, Floats] | None = None
         self.overlap = self.base = np.zeros(self.n)  # of the start, and offset of the gap
@@ -289,12 +277,8 @@ class Pair:
         keeps means. Of a rough surface, an end of a quadratic edge counts as fixed: a traction at
         that node alone would move nothing.
 
-        Parameters
-        ----------
-        constrained : ndarray, shape (n_nodes, 3)
-            Sum of the unit vectors along which supports prescribe displacements.
-        moves : bool
-            Whether slips are those of an increment of the energy-momentum scheme.
+        `constrained` (n_nodes, 3) are sums of the unit vectors along which supports prescribe
+        displacements; `moves` says whether slips are those of the energy-momentum scheme.
         """
         if self.beside is None:
             return
@@ -348,7 +332,7 @@ class Pair:
             return None
         return int(nodes[found[np.argmin(np.hypot(*apart[found].T))]])
 
-    def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
+    def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> Bools:
         """Constraints of slave surfaces on which none is closed at a committed state."""
         seen = covered(terms.area, self.full)
         closed = seen & (terms.gap <= self.noise * self.full)
@@ -356,8 +340,7 @@ class Pair:
             closed |= states != OPEN
         met = np.zeros(self.surface.max(initial=0) + 1, bool)
         met[self.surface[closed]] = True
-        out: NDArray[np.bool_] = ~met[self.surface]
-        return out
+        return np.asarray(~met[self.surface])
 
     def _nothing(self) -> Terms:
         """Terms of a step in which the surfaces do not meet."""
@@ -453,9 +436,9 @@ class Pair:
     def _linear(self, x: Floats, old: Floats) -> Terms:
         """The pair as it is in the reference configuration, linear in displacement."""
         offset = self.core.offset
-        if self.fixed is None or not np.array_equal(offset, self.fixed_offset):
-            self.fixed, self.fixed_offset = self._frozen(offset), offset
-        at = self.fixed
+        if self.fixed is None or not np.array_equal(offset, self.fixed[1]):
+            self.fixed = self._frozen(offset), offset
+        at = self.fixed[0]
 
         def rise(gradient: Floats, since: Floats) -> Floats:
             moved = (gradient * (x - since).ravel()[at.variables]).sum(axis=1)
@@ -566,13 +549,9 @@ class Pair:
     ) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """The linearized constraints: diagonals and right-hand sides of p and q, and the slope.
 
-        A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone.
-
-        Returns
-        -------
-        diagonal_p, rhs_p, diagonal_q, rhs_q, follow, level : ndarray, shape (n,)
-            ``follow`` is dq / dp of slipping rows, ``level`` their q at no pressure; without shear
-            tractions they are zero.
+        A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone. All shapes are
+        (n,): diagonal_p, rhs_p, diagonal_q, rhs_q, follow, level. ``follow`` is dq / dp of slipping
+        rows, ``level`` their q at no pressure; without shear tractions they are zero.
         """
         found = self.conditions.rows(self._at(terms), p, q, state, slip_direction)
         backed = self.backed(terms, state)
@@ -599,10 +578,7 @@ class Pair:
     ) -> tuple[Floats, Floats]:
         """Add the constraints linearized about their states; all arrays have the shape (n,).
 
-        Returns
-        -------
-        follow, level : ndarray, shape (n,)
-            See :meth:`rows`.
+        Returns ``follow`` and ``level`` of :meth:`rows`.
         """
         first, second, end = self.first, self.first + self.n, self.first + self.width
         dp, rp, dq, rq, ratio, level = self.rows(terms, state, p, q, slip_direction)
@@ -640,8 +616,7 @@ class Pair:
         corner, nodes = terms.constraint[own], terms.variables[own][:, :6:2] // 3
         beside = self.place[nodes]
         closed = (beside >= 0) & (state[self.owner[beside]] != OPEN)
-        out: Ints = corner[closed.any(axis=1) & (state[corner] != OPEN)]
-        return out
+        return np.asarray(corner[closed.any(axis=1) & (state[corner] != OPEN)])
 
     def dofs(self, variables: Ints) -> Ints:
         """Dofs of variables of the core, -1 for none."""
@@ -787,7 +762,7 @@ class Pair:
         areas: tuple[Floats, Floats],
         before: tuple[Floats, Floats],
         q: Floats,
-        closed: NDArray[np.bool_],
+        closed: Bools,
     ) -> None:
         """Add the friction work of an increment, with a mean of the tractions at its ends.
 
@@ -795,9 +770,9 @@ class Pair:
         `end_share` the mean is that of the middle.
 
         What slides does so from the start: its traction was at the bound then, though a constraint
-        that stuck or that slid back before had another. Contact that moves along the slave leaves
-        areas and comes to others: what it leaves slid as far as the rest. With rate conditions, and
-        where a sliding body turns back, the traction of the end acts over the whole slip.
+        that stuck or slid back before had another. Contact that moves along the slave leaves
+        `areas` and comes to others: what it leaves slid as far as the rest. With rate conditions,
+        and where a sliding body turns back, the traction of the end acts over the whole slip.
         """
         was, now = areas
         p, last = before
@@ -828,7 +803,7 @@ class Pair:
             self.beyond_trapezoid += 0.5 * max(grown, 0.0) * way + (0.5 * comes if turns else 0.0)
 
 
-def _columns(where: Ints, column: Ints, gradient: Floats, rows: NDArray[np.bool_]) -> Triplets:
+def _columns(where: Ints, column: Ints, gradient: Floats, rows: Bools) -> Triplets:
     """Gradients of some terms as columns."""
     flat, values = where[rows].ravel(), gradient[rows].ravel()
     columns = np.repeat(column[rows], where.shape[1])

@@ -14,7 +14,6 @@ Source: C. de Boor, *A Practical Guide to Splines* (2001), ch. IX.
 from __future__ import annotations
 
 import math
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import IntEnum
 from itertools import permutations
@@ -35,8 +34,6 @@ from corota.model.contact import ContactPair, RigidCurve, Tie, edges_or_nodes, j
 from corota.results.rigid import rigid_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from corota.analysis.numbered_model import NumberedModel
     from corota.arrays import Bools, Floats, Ints
     from corota.mesh import Mesh
@@ -48,33 +45,18 @@ REACH = 4.0
 
 @dataclass
 class Surface:
-    """Edges of a surface for the core.
-
-    Parameters
-    ----------
-    name : str
-    edges : ndarray of int, shape (n, 2)
-        Cell and local edge.
-    nodes : ndarray of int, shape (n, 3)
-        Corner, corner, mid-side node or -1; the element on the left.
-    bulge, thickness, length : ndarray, shape (n,)
-        Share of the drilling rotations in the shape of the edge [1], thickness and length of
-        the chord [length]; of single nodes the distance to the next one.
-    half : ndarray, shape (n,)
-        Distance of a line to its surfaces, on both sides [length]; -1 for edges of bodies.
-    """
+    """Edges of a surface for the core, n of them."""
 
     name: str
-    edges: Ints
-    nodes: Ints
-    bulge: Floats
-    thickness: Floats
-    length: Floats
+    edges: Ints  # cell and local edge, shape (n, 2)
+    nodes: Ints  # corner, corner, mid-side node or -1; the element on the left; shape (n, 3)
+    bulge: Floats  # share of the drilling rotations in the shape of each edge [1], shape (n,)
+    thickness: Floats  # [length], 0 for a circumference, shape (n,)
+    length: Floats  # of the chord; of single nodes the distance to the next one [length]
+    #: Distance of a line to its surfaces, on both sides [length]; -1 for edges of bodies.
     half: Floats = field(default_factory=lambda: np.zeros(0))
-    #: Nodes, in place of edges.
-    points: Ints | None = None
-    #: Whether gaps are those of nodes, as of every pair with lines.
-    pointwise: bool = False
+    points: Ints | None = None  # nodes, in place of edges
+    pointwise: bool = False  # whether gaps are those of nodes, as of every pair with lines
 
     @property
     def two_sided(self) -> bool:
@@ -111,15 +93,6 @@ def _refused(item: ContactPair | Tie, why: str) -> ModelError:
     """The error of a pair or tie that is refused."""
     kind = "tie" if isinstance(item, Tie) else "contact pair"
     return ModelError(f"{kind} {item.name!r}: {why}", item.where)
-
-
-@contextmanager
-def _refusing(item: ContactPair | Tie) -> Iterator[None]:
-    """Name the pair or tie that the core refuses."""
-    try:
-        yield
-    except ValueError as error:
-        raise _refused(item, str(error)) from None
 
 
 def _start(mesh: Mesh) -> Floats:
@@ -160,60 +133,6 @@ def _spacing(system: NumberedModel) -> Floats:
     return out
 
 
-def line_core(
-    system: NumberedModel,
-    item: ContactPair | Tie,
-    slave: Surface,
-    master: Surface | None,
-    reach: float,
-) -> Core:
-    """See :func:`make_core`, for lines and single nodes."""
-    tied, curve = isinstance(item, Tie), item.master
-    if getattr(item, "smooth", False):
-        raise _refused(
-            item, "a pair with a line or with single nodes is not smoothed; leave smooth out"
-        )
-    rigid, sides = None, [slave] if master is None else [slave, master]
-    none = np.zeros((0, 3), np.int64), np.zeros(0), np.zeros(0)
-    if isinstance(curve, RigidCurve):
-        rigid = (curve.backward, *_reference(curve), curve.turns)
-    elif master is None:
-        raise _refused(
-            item,
-            "a line, or single nodes, cannot meet themselves; "
-            "make two surfaces of the parts that meet",
-        )
-    elif master.points is not None:
-        raise _refused(
-            item,
-            f"a master needs edges or lines, and {master.name!r} is a node "
-            "set; exchange slave and master",
-        )
-    else:
-        _check_shared(system, item, slave, master)
-    bodies = [] if tied else [side for side in sides if not of_lines(side)]
-    least = np.inf if tied else reach
-    depth = min((float(_thickness(system, body).max()) for body in bodies), default=least)
-    slave.pointwise = True
-    reach += max(0.0, *(float(side.half.max(initial=0.0)) for side in sides))
-    nodes_alone = tied or slave.points is not None
-    with _refusing(item):
-        core = _core.line_contact(
-            _start(system.model.mesh),
-            none if nodes_alone else (slave.nodes, slave.bulge, slave.half),
-            none[1] if nodes_alone else slave.thickness,
-            slave.node_list if nodes_alone else np.zeros(0, np.int64),
-            none if master is None else (master.nodes, master.bulge, master.half),
-            rigid,
-            method="point_tie" if tied else "line",
-            reach=reach,
-            margin=reach if tied else 0.5 * reach,
-            depth=depth,
-        )
-    core.carry(carrier(system, slave), carrier(system, master))
-    return core, slave, master, reach, depth
-
-
 # -- masters without kinks -----------------------------------------------------------------
 
 #: Turn of a straight boundary whose coordinates have few digits [rad].
@@ -227,19 +146,9 @@ class Shape(IntEnum):
 
 
 def smoothed(points: Floats, master: Surface) -> tuple[Ints, Floats, Ints]:
-    """Pieces of the smoothed master in place of its edges.
+    """Pieces of the smoothed master in place of its edges, in the format of the core.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n_nodes, 2)
-    master : Surface
-
-    Returns
-    -------
-    nodes : ndarray of int, shape (m, 3)
-    bulge : ndarray, shape (m,)
-    shapes : ndarray of int, shape (m,)
-        In the format of the core.
+    These are nodes, bulge and kinds of shape, (m, 3), (m,) and (m,); `points` are (n_nodes, 2).
     """
     of_edge = [_sides(row) for row in master.nodes.tolist()]
     after = {a: b for own in of_edge for a, b in own}
@@ -420,31 +329,38 @@ def make_core(system: NumberedModel, item: ContactPair | Tie) -> Core:
         master = surface(system, item.master, item)
         if pair and pair.images is not None:
             master = master.repeated(pair.images)
-    longest = max(float(s.length.max()) for s in (slave, master) if s is not None)
+    sides = [slave] if master is None else [slave, master]
+    longest = max(float(side.length.max()) for side in sides)
     if isinstance(item, Tie):
         reach = item.tolerance or 0.1 * longest
     else:
         reach = item.reach or REACH * longest
-    if of_lines(slave) or (pair and master is not None and of_lines(master)):
-        return line_core(system, item, slave, master, reach)
-    if master is not None:
+    depth = np.inf
+    slave.pointwise = of_lines(slave) or (pair is not None and any(map(of_lines, sides)))
+    if slave.pointwise:
+        _check_lines(system, item, slave, master)
+        if pair:
+            bodies = [side for side in sides if not of_lines(side)]
+            depth = min((float(_thickness(system, body).max()) for body in bodies), default=reach)
+        reach += max(float(side.half.max(initial=0.0)) for side in sides)
+    elif master is not None:
         _check_pair(system, item, slave, master)
-    if pair is None:
-        return core_of(mesh, item, slave, master, reach, np.inf), slave, master, reach, np.inf
-    thickness = _thickness(system, slave)
-    # Deeper inside a body, the core takes the opposite side for that of another body.
-    same = itself
-    if pair.images is not None and master is not None:
-        part = part_of_cells(mesh)
-        same = bool(np.isin(part[slave.edges[:, 0]], part[master.edges[:, 0]]).any())
-    depth = 0.5 * float(thickness.min()) if same else float(thickness.max())
-    if itself:
-        slave = along_contour(slave, mesh.points)
-    if master is not None:
-        slave.thickness[:] = _joint(mesh.points, slave, master)
+    if pair and not slave.pointwise:
+        # Deeper inside a body, the core takes the opposite side for that of another body.
+        same = itself
+        if pair.images is not None and master is not None:
+            part = part_of_cells(mesh)
+            same = bool(np.isin(part[slave.edges[:, 0]], part[master.edges[:, 0]]).any())
+        thickness = _thickness(system, slave)
+        depth = 0.5 * float(thickness.min()) if same else float(thickness.max())
+        if itself:
+            slave = along_contour(slave, mesh.points)
+        if master is not None:
+            slave.thickness[:] = _joint(mesh.points, slave, master)
     core = core_of(mesh, item, slave, master, reach, depth)
-    # A boundary that meets itself is both sides; a rigid master knows its own rotation.
-    core.carry(carrier(system, slave), carrier(system, master or slave))
+    if pair or slave.pointwise:
+        # A boundary that meets itself is both sides; a rigid master knows its own rotation.
+        core.carry(carrier(system, slave), carrier(system, master or slave))
     return core, slave, master, reach, depth
 
 
@@ -471,29 +387,50 @@ def core_of(
     reach: float,
     depth: float,
 ) -> _core.Contact:
-    """The core's pair of two surfaces of bodies, of one with itself or with a rigid curve.
+    """The core's pair of two surfaces, of one with itself or with a rigid curve.
 
     Raises
     ------
     ModelError
         If the core refuses it.
     """
-    own = _start(mesh), slave.nodes, slave.bulge, slave.thickness
-    facts: Any = {"method": "tie", "reach": reach, "margin": reach}
+    x, curve, margin = _start(mesh), item.master, reach
+    method, corners = "point_tie" if slave.pointwise else "tie", False
     if isinstance(item, ContactPair):
+        margin = 0.5 * reach
         # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
-        facts |= {"method": item.method, "margin": 0.5 * reach, "corners": item.law is None}
-    with _refusing(item):
-        if isinstance(item.master, RigidCurve):
-            node, point = _reference(item.master)
-            rows, turns = item.master.backward, item.master.turns
-            return _core.Contact.rigid(*own, rows, node, point, turns=turns, depth=depth, **facts)
+        method, corners = "line" if slave.pointwise else item.method, item.law is None
+    facts: Any = {"method": method, "reach": reach, "margin": margin}
+    try:
+        if slave.pointwise:
+            none = np.zeros((0, 3), np.int64), np.zeros(0), np.zeros(0)
+            own, thickness, points = (
+                (slave.nodes, slave.bulge, slave.half),
+                slave.thickness,
+                none[0],
+            )
+            if isinstance(item, Tie) or slave.points is not None:
+                own, thickness, points = none, none[1], slave.node_list
+            other = none if master is None else (master.nodes, master.bulge, master.half)
+            rigid = None
+            if isinstance(curve, RigidCurve):
+                rigid = (curve.backward, *_reference(curve), curve.turns)
+            return _core.line_contact(
+                x, own, thickness, points.ravel(), other, rigid, depth=depth, **facts
+            )
+        side = x, slave.nodes, slave.bulge, slave.thickness
+        facts |= {"corners": corners}
+        if isinstance(curve, RigidCurve):
+            place = curve.backward, *_reference(curve)
+            return _core.Contact.rigid(*side, *place, turns=curve.turns, depth=depth, **facts)
         if master is None:
-            return _core.Contact.itself(*own, **facts)
+            return _core.Contact.itself(*side, **facts)
         nodes, bulge, shapes = master.nodes, master.bulge, None
         if getattr(item, "smooth", False):
             nodes, bulge, shapes = smoothed(mesh.points, master)
-        return _core.Contact.edges(*own, nodes, bulge, master_shapes=shapes, depth=depth, **facts)
+        return _core.Contact.edges(*side, nodes, bulge, master_shapes=shapes, depth=depth, **facts)
+    except ValueError as error:
+        raise _refused(item, str(error)) from None
 
 
 def of_lines(side: Surface) -> bool:
@@ -537,6 +474,29 @@ def _check_shared(
             f"surfaces {slave.name!r} and {master.name!r} share node "
             f"{system.model.mesh.node_labels[shared[0]]}, so they cannot separate there; remove "
             "it from one of them, give each body its own nodes, or use self-contact of one surface",
+        )
+
+
+def _check_lines(
+    system: NumberedModel, item: ContactPair | Tie, slave: Surface, master: Surface | None
+) -> None:
+    if getattr(item, "smooth", False):
+        raise _refused(
+            item, "a pair with a line or with single nodes is not smoothed; leave smooth out"
+        )
+    if master is not None and master.points is not None:
+        raise _refused(
+            item,
+            f"a master needs edges or lines, and {master.name!r} is a node "
+            "set; exchange slave and master",
+        )
+    if master is not None:
+        _check_shared(system, item, slave, master)
+    elif not isinstance(item.master, RigidCurve):
+        raise _refused(
+            item,
+            "a line, or single nodes, cannot meet themselves; "
+            "make two surfaces of the parts that meet",
         )
 
 
