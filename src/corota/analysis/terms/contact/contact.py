@@ -57,16 +57,6 @@ class ContactTerm(Term):
     Parameters
     ----------
     system : NumberedModel
-
-    Attributes
-    ----------
-    pairs : list of Pair
-    n : int
-        Multipliers of all pairs.
-    committed : ndarray, shape (n,)
-        Their values in the committed state.
-    nodal : ndarray, shape (n_dofs,)
-        Stiffness of each dof at the start.
     """
 
     name = "contact"
@@ -91,6 +81,7 @@ class ContactTerm(Term):
             pair.name = pair.item.name + (f" ({count})" if count > 1 else "")
             pair.first = self.n
             self.n += pair.width
+        #: Multipliers in the committed state, n of all pairs, and its displacement.
         self.committed = np.zeros(self.n)
         self.u = np.zeros(system.n_dofs)
         #: Displacement that slips are measured from within an increment, if not the committed one:
@@ -104,9 +95,10 @@ class ContactTerm(Term):
         self.first = 0.0
         self.time = 0.0
         self.notes: list[str] = []
+        #: Damping and stiffness of each dof, the latter of the start.
         self.damped = self.nodal = np.zeros(0)
-        #: Force of pairs that ended with the step, at its start; empty for none.
-        self.fading = np.zeros(0)
+        #: Force of pairs that ended with the step, at its start.
+        self.fading = np.zeros(system.n_dofs)
         #: Whether stabilizing damping acts; not on paths, which have no time.
         self.damps, self.persistent = True, False
         #: Weight of the end of an increment in the forces of pressure laws, and their force at its
@@ -279,7 +271,7 @@ class ContactTerm(Term):
 
     def _enter(self, explicit: bool) -> None:
         """Let pairs begin and end with the step; what those that end pressed fades."""
-        self.fading = np.zeros(0)
+        self.fading = np.zeros(self.system.n_dofs)
         for k, (pair, (p, q)) in enumerate(
             zip(self.pairs, self.parts(self.committed), strict=True)
         ):
@@ -291,8 +283,7 @@ class ContactTerm(Term):
             elif before and not pair.active and self.rubs and self.at is not None:
                 force = np.zeros(self.system.n_dofs)
                 pair.add_forces(self.at.acting[k], p, q, force)
-                left = self.fading if len(self.fading) else 0.0
-                self.fading = self.system.at_nodes(force) + left
+                self.fading += self.system.at_nodes(force)
 
     def _start_pair(self, pair: Pair, x: Floats, explicit: bool) -> None:
         """Check the initial gaps of a pair: report, adjust or ramp them."""
@@ -376,10 +367,13 @@ class ContactTerm(Term):
 
     def add(self, point: StatePoint, at: Evaluation) -> None:
         """Add the forces for given multipliers, and their gaps and slips."""
-        state = at.contact_state = self._at_kink(point) or self.evaluate(
-            point.u, point.multipliers, point.time, at.values
-        )
-        state.time = point.time
+        kink, state = self.trial_kink, None
+        if kink is not None:
+            state = near_side(self, point, kink)
+        if state is None:
+            self.trial_kink = None
+            state = self.evaluate(point.u, point.multipliers, point.time, at.values)
+        at.contact_state, state.time = state, point.time
         self.last = point.u, state
         at.internal = at.internal - state.force
         at.scale = at.scale + state.size
@@ -389,24 +383,13 @@ class ContactTerm(Term):
             stiffness, since = self.springs
             at.add_spring(stiffness, point.u - since)
 
-    def _at_kink(self, point: StatePoint) -> ContactState | None:
-        """Contact on the near side of the kink, with the force that it carries; or None."""
-        if self.trial_kink is None:
-            return None
-        state: ContactState | None = near_side(self, point, self.trial_kink)
-        if state is None:
-            self.trial_kink = None
-        return state
-
     def evaluate(
         self, u: Floats, multipliers: Floats, step_time: float, values: Floats
     ) -> ContactState:
         """All pairs at a trial state.
 
-        Parameters
-        ----------
-        values : ndarray, shape (nnz,)
-            Tangent of the elements, for the stiffness of the nodes; empty where it is not needed.
+        `values` (nnz,) are the tangent of the elements, from which the stiffness of the nodes is
+        found at first; empty where it is not needed.
         """
         system, since = self.system, self.slip_start
         if len(values) and not len(self.nodal):
@@ -424,8 +407,7 @@ class ContactTerm(Term):
             pair.add_forces(terms.acting, pair.share * p, q, force, size)
         damping = self._damping(step_time)
         state = ContactState(found, system.at_nodes(force), size, multipliers, damping)
-        if len(self.fading):
-            state.force = state.force + self._left(step_time) * self.fading
+        state.force = state.force + self._left(step_time) * self.fading
         if len(self.law_force):
             now = self.forces(found, multipliers, shears=False, laws=True)[0]
             state.of_end = state.force + (1.0 - self.law_share) * now
@@ -456,9 +438,7 @@ class ContactTerm(Term):
             return np.zeros(self.system.n_dofs)
         acting = np.repeat([p.active for p in self.pairs], [p.width for p in self.pairs])
         force = self.forces(self.at.acting, self.committed * acting, shears=False)[0]
-        if len(self.fading):
-            force = force + self._left(self.time) * self.fading
-        return force
+        return force + self._left(self.time) * self.fading
 
     def _left(self, step_time: float) -> float:
         """Share of the forces of pairs that ended with the step which is left at a time of it."""
@@ -524,6 +504,7 @@ class ContactTerm(Term):
 
     def accept(self, u: Floats, contact_state: ContactState, step_time: float) -> None:
         """Accept a state."""
+        moved = u - self.u
         none = [np.full(pair.n, OPEN, np.int8) for pair in self.pairs]
         states = none if self.at is None else self.at.states
         each = self.each(contact_state.terms, contact_state.multipliers)
@@ -537,11 +518,10 @@ class ContactTerm(Term):
         # The equations of both ends have these forces, and so has the work of the loads.
         before, self._damping_force = self._damping_force, np.zeros(0)
         if contact_state.damping is not None:
-            self._damping_force = contact_state.damping * (u - self.u)
+            self._damping_force = contact_state.damping * moved
             both = self._damping_force + (before if len(before) else 0.0)
-            self.damping_work += 0.5 * float(both @ (u - self.u))
-        self.slip_start, self.overcome = None, ""
-        moved, law = u - self.u, self.energies()["ALLCL"]
+            self.damping_work += 0.5 * float(both @ moved)
+        self.slip_start, self.overcome, law = None, "", self.energies()["ALLCL"]
         contact_state.where = self.positions(0.5 * (self.u + u) if self.persistent else u)
         self.u, self.committed, self.time = u.copy(), contact_state.multipliers.copy(), step_time
         contact_state.states = self.states(contact_state.terms, self.committed)

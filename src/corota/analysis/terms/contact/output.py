@@ -66,8 +66,9 @@ def output(term: ContactTerm) -> TermOutput:
         # Positive when the slave is pulled along its own edges' direction.
         rows = np.column_stack([p, q, gap, pair.slid, state])[pair.owner]
         if not pair.tied:
-            for table in (values, *([each[pair.name]] if pair.name in each else [])):
-                _spread(table, pair, rows, terms)
+            _spread(values, pair, rows, terms)
+        if pair.name in each:
+            _spread(each[pair.name], pair, rows, terms)
         if at is None or terms is None:
             sums |= {} if pair.tied else {f"{pair.name}: gap": float(gap.min(initial=pair.reach))}
             continue
@@ -98,19 +99,14 @@ def output(term: ContactTerm) -> TermOutput:
 def pressures(
     term: ContactTerm, terms: list[Terms] | None, multipliers: Floats
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """Contact pressure of the slave nodes, and nodes whose pair has a pressure law.
+    """Contact pressure of the slave nodes, and nodes whose pair has a pressure law; (n_nodes,).
 
-    Parameters
-    ----------
-    term : ContactTerm
-    terms : list of Terms or None
-        Of all pairs at the state; None before the first increment.
-    multipliers : ndarray, shape (n_multipliers,)
+    `terms` are those of all pairs at the state, None before the first increment; `multipliers` have
+    the shape (n_multipliers,).
     """
     n = len(term.system.per_node)
     values, soft = np.zeros((n, 5)), np.zeros(n, bool)
-    each = zip(term.pairs, term.parts(multipliers), strict=True)
-    for k, (pair, (p, _)) in enumerate(each):
+    for k, (pair, (p, _)) in enumerate(zip(term.pairs, term.parts(multipliers), strict=True)):
         if pair.tied:
             continue
         rows = np.zeros((pair.n, 5))
@@ -148,12 +144,9 @@ def _spread_corners(own: Floats, pair: Pair, rows: Floats, terms: Terms) -> None
 
     A corner of the slave is a node itself; one of the master presses on those of an edge.
     """
-    edges = pair.slave.nodes
-    for k, variables, gradient in zip(
-        terms.constraint, terms.variables, terms.gap_gradient, strict=True
-    ):
-        if k < pair.of_surfaces or rows[k, 4] == OPEN:
-            continue
+    edges, of = pair.slave.nodes, terms.constraint
+    for term in np.flatnonzero((of >= pair.of_surfaces) & (rows[of, 4] != OPEN)):
+        k, variables, gradient = of[term], terms.variables[term], terms.gap_gradient[term]
         a, b = (int(v) // 3 for v in variables[[0, 2]])
         edge = np.flatnonzero((edges[:, 0] == a) & (edges[:, 1] == b))
         shares = {a: 1.0}
@@ -358,7 +351,7 @@ def start_notes(
 
 def fillet_note(pair: Pair) -> str:
     """A remark on round corners of a rigid curve that are too small for the slave edges, or ''."""
-    curve = getattr(pair.item, "master", None)
+    curve = pair.item.master
     if not isinstance(curve, RigidCurve) or pair.beside is None:
         return ""
     rows = curve.segments

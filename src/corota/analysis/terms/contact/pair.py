@@ -72,22 +72,6 @@ class Pair:
     item : ContactPair or Tie
     dofs : ndarray of int, shape (3 n_nodes + 1,)
         Dof of each variable ``3 node + component``, -1 for none, of which the last has none.
-
-    Attributes
-    ----------
-    n : int
-        Constraints.
-    nodes : ndarray of int, shape (n,)
-        Their slave nodes; of a facet that may meet a rounded corner, its first node; of a sharp
-        corner, the nearest one at the start.
-    of_nodes : int
-        Constraints of nodes; those of facets come behind.
-    of_surfaces : int
-        Constraints of nodes and facets; those of corners come behind.
-    corners : ndarray of int, shape (n - of_surfaces,)
-        Nodes of the corners, -1 for those of a rigid body.
-    width : int
-        Multipliers of the pair: n, or 2 n with friction and in ties.
     """
 
     recomputed: ClassVar[frozenset[str]] = frozenset({"_dofs"})
@@ -106,6 +90,9 @@ class Pair:
         self.core, self.slave, self.master, self.reach, self.depth = make_core(system, item)
         self.on_slave = np.zeros(len(system.per_node), bool)
         self.on_slave[self.slave.node_list] = True
+        #: Slave nodes of the n constraints; of a facet that may meet a rounded corner, its first
+        #: node; of a sharp corner, the nearest one at the start. Those of nodes come first, then
+        #: those of facets, then those of corners.
         self.nodes = np.asarray(self.core.nodes, np.int64)
         self.n = len(self.nodes)
         #: Whether friction acts, in some step at least, and its coefficients now.
@@ -114,6 +101,7 @@ class Pair:
         #: Slip rates [length/time] now and at the committed state.
         self.rate = self.committed_rate = np.zeros(self.n)
         self.of_nodes = len(distinct(self.nodes))
+        #: Nodes of the corners, -1 for those of a rigid body.
         self.corners = np.asarray(self.core.corners, np.int64)
         self.of_surfaces = self.n - len(self.corners)
         #: Nodes in messages: of a sharp corner of the mesh, itself.
@@ -125,6 +113,7 @@ class Pair:
         self.full = np.asarray(self.core.full_area, float)
         #: Whether shear tractions are unknowns, in some step at least.
         self.two = self.tied or self.rubs
+        #: Multipliers of the pair, and the first of them.
         self.width = self.n * (2 if self.two else 1)
         self.first = 0
         self.reference = np.column_stack([system.model.mesh.points, np.zeros(len(system.per_node))])
@@ -165,9 +154,8 @@ class Pair:
         self.stiffness = np.ones(self.n)  # pressure per gap for the choice of the set
         self.size = system.length
         far = float(np.abs(system.model.mesh.points).max())
-        self.noise = (
-            32.0 * float(np.finfo(float).eps) * (system.length + far)
-        )  # gaps that are rounding [length]
+        #: Gaps that are rounding [length].
+        self.noise = 32.0 * float(np.finfo(float).eps) * (system.length + far)
         self.conditions = self._conditions()
         self.name = item.name
 
@@ -316,11 +304,12 @@ class Pair:
         That of a rigid curve, -1 for a fixed one; of a body the nearest one on the plane across the
         direction. None if there is none.
         """
-        if isinstance(self.item, ContactPair) and isinstance(self.item.master, RigidCurve):
-            node = self.item.master.reference
+        curve = self.item.master
+        if isinstance(curve, RigidCurve):
+            node = curve.reference
             if not isinstance(node, int | np.integer):
                 return -1
-            turns = self.item.master.turns and not constrained[node, 2]
+            turns = curve.turns and not constrained[node, 2]
             fixed = abs(abs(float(constrained[node, :2] @ along)) - 1.0) < SAME
             return int(node) if fixed and not turns else None
         nodes = self.slave.node_list if self.master is None else self.master.node_list
@@ -390,48 +379,38 @@ class Pair:
         return np.where(covered(area, self.full), gap, first)
 
     def _read(self, raw: _core._Gaps) -> Terms:
-        if self.beside is not None:
-            area = raw["total_area"]
-            if self.frozen:
-                # An iterate far from the end of the increment may have seen little.
-                ample = (area >= 2.0 * WEAK * self.full) & ~self.held_ends
-                self.owner = np.where(ample, np.arange(self.n), self.owner)
-            else:
-                self.owner = self._owners(area)
-        return self._shared(raw)
-
-    def _shared(self, raw: _core._Gaps) -> Terms:
-        """Terms in which weak parts belong to their owners."""
-        gap, slip, area = raw["total_gap"], raw["total_slip"], raw["total_area"]
-        parts, constraint = (gap, area), raw["constraint"]
-        if (self.owner != np.arange(self.n)).any():
-            gap, slip, area = (self._owned(t) for t in (gap, slip, area))
-            constraint = self.owner[constraint]
-        rest = raw["pair"], raw["variables"], raw["gap_gradient"], raw["slip_gradient"]
-        return Terms(gap, slip, area, constraint, *rest, parts)
-
-    def _owned(self, parts: Floats) -> Floats:
-        """Sums of the parts of nodes by the constraints that own them."""
-        return np.bincount(self.owner, parts, self.n).astype(float)
-
-    def _owners(self, area: Floats) -> Ints:
-        """Constraint that each node's part belongs to: its own, or a neighbor's.
+        """Terms at a state, for which the owner of each node's part is found.
 
         At the end of the opposite surface a slave edge is partly covered. The node beyond would
         have a constraint on a negligible area, with any pressure; its neighbor's pressure acts
         there. So it does at a fixed end of the slave: a traction there would not move the slave,
         and could take any size.
         """
-        own = np.arange(self.n)
-        assert self.beside is not None
-        cover = area / self.full
-        weak = (cover < WEAK) | self.held_ends
-        if not weak.any():
-            return own
-        left, right = self.beside
-        a, b = (np.where(side >= 0, cover[side], 0.0) for side in (left, right))
-        best, which = np.maximum(a, b), np.where(a >= b, left, right)
-        return np.where(weak & (best >= WEAK), which, own)
+        own, area = np.arange(self.n), raw["total_area"]
+        if self.beside is not None and self.frozen:
+            # An iterate far from the end of the increment may have seen little.
+            ample = (area >= 2.0 * WEAK * self.full) & ~self.held_ends
+            self.owner = np.where(ample, own, self.owner)
+        elif self.beside is not None:
+            left, right = self.beside
+            cover = area / self.full
+            weak = (cover < WEAK) | self.held_ends
+            a, b = (np.where(side >= 0, cover[side], 0.0) for side in (left, right))
+            best, which = np.maximum(a, b), np.where(a >= b, left, right)
+            self.owner = np.where(weak & (best >= WEAK), which, own)
+        return self._shared(raw)
+
+    def _shared(self, raw: _core._Gaps) -> Terms:
+        """Terms in which weak parts belong to their owners."""
+        parts = raw["total_gap"], raw["total_area"]
+        gap, area = (self._owned(part) for part in parts)
+        gradients = raw["gap_gradient"], raw["slip_gradient"]
+        of_terms = self.owner[raw["constraint"]], raw["pair"], raw["variables"]
+        return Terms(gap, self._owned(raw["total_slip"]), area, *of_terms, *gradients, parts)
+
+    def _owned(self, parts: Floats) -> Floats:
+        """Sums of the parts of nodes by the constraints that own them."""
+        return np.bincount(self.owner, parts, self.n).astype(float)
 
     def _linear(self, x: Floats, old: Floats) -> Terms:
         """The pair as it is in the reference configuration, linear in displacement."""
@@ -554,17 +533,13 @@ class Pair:
         rows, ``level`` their q at no pressure; without shear tractions they are zero.
         """
         found = self.conditions.rows(self._at(terms), p, q, state, slip_direction)
-        backed = self.backed(terms, state)
-        if len(backed):
-            # The constraints may depend on each other: the pressure of the corner stays.
-            less = self.redundant * self.full[backed] / self.stiffness[backed]
-            found[0][backed] -= less
-            stuck = state[backed] == CLOSED
-            found[2][backed[stuck]] -= less[stuck]
-        for k in np.flatnonzero(self.resting):
-            # Nothing depends on the shear traction there: that of what sticks stays.
-            if state[k] == CLOSED:
-                found[2][k] -= self.redundant * self.full[k] / self.stiffness[k]
+        less, backed = self.redundant * self.full / self.stiffness, self.backed(terms, state)
+        # The constraints may depend on each other: the pressure of the corner stays.
+        found[0][backed] -= less[backed]
+        # So does the shear traction of what sticks there, and of what rests, where nothing uses it.
+        for own in (backed, np.flatnonzero(self.resting)):
+            stuck = own[state[own] == CLOSED]
+            found[2][stuck] -= less[stuck]
         return tuple(found)  # type: ignore[return-value]
 
     def linearize(

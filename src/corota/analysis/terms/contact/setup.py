@@ -95,11 +95,6 @@ def _refused(item: ContactPair | Tie, why: str) -> ModelError:
     return ModelError(f"{kind} {item.name!r}: {why}", item.where)
 
 
-def _start(mesh: Mesh) -> Floats:
-    """Positions and rotations at the start, shape (n_nodes, 3)."""
-    return np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
-
-
 def _reference(curve: RigidCurve) -> tuple[int, tuple[float, float]]:
     """Node that a curve follows, -1 for none, and the point of a fixed one."""
     if curve.reference is None or isinstance(curve.reference, tuple):
@@ -394,35 +389,31 @@ def core_of(
     ModelError
         If the core refuses it.
     """
-    x, curve, margin = _start(mesh), item.master, reach
+    x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
+    curve, margin = item.master, reach
     method, corners = "point_tie" if slave.pointwise else "tie", False
     if isinstance(item, ContactPair):
         margin = 0.5 * reach
         # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
         method, corners = "line" if slave.pointwise else item.method, item.law is None
     facts: Any = {"method": method, "reach": reach, "margin": margin}
+    rigid = (curve.backward, *_reference(curve)) if isinstance(curve, RigidCurve) else None
+    turns = isinstance(curve, RigidCurve) and curve.turns
     try:
         if slave.pointwise:
             none = np.zeros((0, 3), np.int64), np.zeros(0), np.zeros(0)
-            own, thickness, points = (
-                (slave.nodes, slave.bulge, slave.half),
-                slave.thickness,
-                none[0],
-            )
-            if isinstance(item, Tie) or slave.points is not None:
-                own, thickness, points = none, none[1], slave.node_list
             other = none if master is None else (master.nodes, master.bulge, master.half)
-            rigid = None
-            if isinstance(curve, RigidCurve):
-                rigid = (curve.backward, *_reference(curve), curve.turns)
-            return _core.line_contact(
-                x, own, thickness, points.ravel(), other, rigid, depth=depth, **facts
-            )
+            edges, thickness = (slave.nodes, slave.bulge, slave.half), slave.thickness
+            nodes = np.zeros(0, np.int64)
+            if isinstance(item, Tie) or slave.points is not None:
+                edges, thickness, nodes = none, none[1], slave.node_list
+            curved = rigid and (*rigid, turns)
+            own = edges, thickness, nodes
+            return _core.line_contact(x, *own, other, curved, depth=depth, **facts)
         side = x, slave.nodes, slave.bulge, slave.thickness
         facts |= {"corners": corners}
-        if isinstance(curve, RigidCurve):
-            place = curve.backward, *_reference(curve)
-            return _core.Contact.rigid(*side, *place, turns=curve.turns, depth=depth, **facts)
+        if rigid:
+            return _core.Contact.rigid(*side, *rigid, turns=turns, depth=depth, **facts)
         if master is None:
             return _core.Contact.itself(*side, **facts)
         nodes, bulge, shapes = master.nodes, master.bulge, None
@@ -517,10 +508,15 @@ def _check_pair(
     if isinstance(item, Tie):
         return
     _check_shared(system, item, slave, master)
-    out_s, out_m = (outward(mesh.points[side.nodes[:, :2]]) for side in (slave, master))
+    x = mesh.points
+    out_s, out_m = (outward(x[side.nodes[:, :2]]) for side in (slave, master))
     # No edges face each other: bodies may rotate, but not before contact.
     facing = any((out_s[own] @ out_m.T < 0.0).any() for own in _chunks(len(out_s), len(out_m)))
-    if not facing or not _towards(mesh.points, slave, master, out_s):
+    # Nor does any face or overlap the corner of the master's box that is farthest along its normal.
+    at, box = x[slave.nodes[:, :2]].mean(axis=1), x[master.node_list]
+    corner = np.where(out_s > 0.0, box.max(axis=0), box.min(axis=0))
+    ahead = ((corner - at) * out_s).sum(axis=1) > -0.5 * slave.length.max()
+    if not facing or not ahead.any():
         raise _refused(
             item,
             f"no edge of {slave.name!r} faces any edge of "
@@ -539,16 +535,6 @@ def outward(pieces: Floats) -> Floats:
     """Unit normals of straight pieces of shape (m, 2, 2), to their right."""
     along = pieces[:, 1] - pieces[:, 0]
     return np.asarray(np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None])
-
-
-def _towards(x: Floats, slave: Surface, master: Surface, out: Floats) -> bool:
-    """Whether any slave edge faces the master or overlaps it."""
-    at = x[slave.nodes[:, :2]].mean(axis=1)
-    center = x[master.node_list]
-    low, high = center.min(axis=0), center.max(axis=0)
-    # The corner of the master's box farthest along each normal.
-    corner = np.where(out > 0.0, high, low)
-    return bool((((corner - at) * out).sum(axis=1) > -0.5 * slave.length.max()).any())
 
 
 # -- sides of surfaces ------------------------------------------------------------------
@@ -574,20 +560,20 @@ def check_side(system: NumberedModel, item: ContactPair | Tie, slave: Surface, x
         return
     mesh, size = system.model.mesh, SAME * float(slave.length.max())
     pieces = curve_at(curve, chords(curve), mesh.points, x)
+    ends = x[slave.nodes[:, :2], :2]
+    nodes = slave.node_list if slave.pointwise else slave.nodes[:, 0]
+    at = x[nodes, :2] if slave.pointwise else ends.mean(axis=1)
+    distance, best, beside = signed_distances(pieces, at, size)
     if slave.pointwise:
         # Lines and single nodes have no outer side of their own.
-        nodes, least = slave.node_list, size
-        distance, _, beside = signed_distances(pieces, x[nodes, :2], size)
+        away = distance <= size
     else:
-        nodes, least = slave.nodes[:, 0], 0.0
-        ends = x[slave.nodes[:, :2], :2]
-        distance, best, beside = signed_distances(pieces, ends.mean(axis=1), size)
+        # An edge that faces away is behind, or in front with its back to the curve.
         turned = (outward(ends) * outward(pieces)[best]).sum(axis=1)
         beside &= np.abs(turned) >= STRAIGHT
+        away = turned >= STRAIGHT
     nearest = int(np.argmin(np.where(beside, np.abs(distance), np.inf)))
-    # An edge that faces away is behind, or in front with its back to the curve.
-    away = distance[nearest] <= size if slave.pointwise else turned[nearest] >= STRAIGHT
-    if not beside[nearest] or not away:
+    if not (beside & away)[nearest]:
         return
     part = part_of_nodes(mesh)
     if slave.pointwise:
@@ -600,6 +586,7 @@ def check_side(system: NumberedModel, item: ContactPair | Tie, slave: Surface, x
         part = parts_without(mesh, springs)
     body, _, inside = signed_distances(pieces, x[np.isin(part, part[slave.node_list]), :2], size)
     # What lies on the curve as a whole tells no side.
+    least = size if slave.pointwise else 0.0
     if not inside.any() or body[inside].max() >= -body[inside].min() - least:
         return
     depth = -float(distance[nearest])
