@@ -170,6 +170,7 @@ class ExplicitStepper(Stepper):
         self.n = max(int(np.ceil(step.period / dt * (1.0 - 1e-12))), 1)
         self.dt = dt = step.period / self.n
         self.keep = max(self.n // FRAMES, 1)
+        self.heated = system.free.responds and system.conditions.temperatures.vary()
         grid = [(s, round(s / dt)) for s in stops if 0.0 < s <= step.period]
         on = [i for s, i in grid if abs(i * dt - s) <= SAME_TIME * step.period]
         #: Requested times within increments.
@@ -305,6 +306,10 @@ class ExplicitStepper(Stepper):
         allowed = BLOW_UP * self.known.energy(worked, self.internal, pending)
         # The frequency of the increment itself is above the stable one, and energy comes of it.
         unstable = stiff * dt**2 > 4.0 * inert and kinetic + self.internal > allowed
+        if unstable and self.heated:  # heat changes forces without any motion
+            still = system.forces(self.u - du, time).internal
+            stiff = float(np.where(carried, at.internal - still, 0.0) @ du)
+            unstable = stiff * dt**2 > 4.0 * inert
         if unstable or not np.isfinite(kinetic + self.internal):
             raise ConvergenceError(
                 f"the solution diverges at step time {time:g}; the stable increment has become "
@@ -314,6 +319,8 @@ class ExplicitStepper(Stepper):
         self.envelope.add(self.u, whole, at.external, np.where(constrained, residual, 0.0))
         requested = i in self.wanted or any(f and i % f == 0 for f in self.every)
         if i % self.keep and i != self.n and not requested:
+            if self.heated:
+                system.recover(self.u)  # adds the work of heat
             return None
         state.u, state.v = self.u, whole
         state.at = replace(at, internal=at.internal - force)
