@@ -124,3 +124,29 @@ def test_spring_whose_response_vanishes_or_is_late(direct: bool) -> None:
     exact = force / (k - mass * w**2 + 1j * c * w)
     np.testing.assert_allclose(results.history("UA1", at="end")[steady], np.abs(exact), rtol=1e-8)
     np.testing.assert_allclose(results.history("UP1", at="end")[steady], np.angle(exact), rtol=1e-8)
+
+
+@pytest.mark.parametrize("direct", [True, False])
+def test_amplitudes_and_phases_do_not_depend_on_the_axes_of_nodes(*, direct: bool) -> None:
+    """Damped motion in both directions; nodes with axes of their own have the same response."""
+    answers = []
+    for angle in (0.0, 0.6):
+        model = ct.Model(ct.mesh.rectangle(10.0, 2.0, nx=4, ny=2))
+        model.section(element="Q4", material=ct.Elastic(E=1000.0, rho=0.01), thickness=1.0)
+        if angle:
+            model.local_axes("right", angle=angle)
+            model.local_axes("left", angle=-2.0)
+        model.fix("left")
+        damping = {"rayleigh": (30.0, 1e-3)} if direct else {"damping": 0.1}
+        step = ct.SteadyState(lowest=2.0, highest=4.0, points=3, direct=direct, **damping)  # type: ignore[arg-type]
+        model.traction("right", x=0.3, y=1.0)
+        step.pressure("top", 0.5)
+        frames = ct.solve(model, [step] if direct else [ct.Frequency(modes=6), step]).frames
+        answers.append(frames[-1])
+    plain, turned = answers
+    assert plain.H is not None
+    assert turned.H is not None
+    assert np.abs(np.sin(plain.H[:, 2:4])).max() > 0.1
+    np.testing.assert_allclose(turned.H, plain.H, rtol=1e-7, atol=1e-9 * np.abs(plain.H).max())
+    for name in ("largest amplitude", "phase at largest"):
+        assert turned.scalars[name] == pytest.approx(plain.scalars[name], rel=1e-7)

@@ -115,8 +115,8 @@ def describe(system: NumberedModel, modes: Floats) -> str:
 
 def _slack(system: NumberedModel, modes: Floats) -> bool:
     """Whether all that moves are joints between two bars or springs, as in a chain."""
-    size = np.abs(modes).max(axis=0)
-    moving = (system.by_node(size) > SMALL * size.max()).any(axis=1)
+    size = np.max([np.abs(system.by_node(mode)) for mode in modes], axis=0)
+    moving = (size > SMALL * size.max()).any(axis=1)
     bars, others = np.zeros(len(moving), np.int64), np.zeros(len(moving), bool)
     for block in system.blocks:
         element = elements.find(block.section.element)

@@ -123,16 +123,16 @@ class HarmonicStepper(Stepper):
         state.at = supported(lin, forces.real, lin.at.external + load.real)
         state.step_time = f
         reaction = _reaction(lin, forces, load)
-        amplitude = [lin.system.by_node(np.abs(part))[:, :2] for part in (response, reaction)]
-        phase = lin.system.by_node(np.angle(response))[:, :2]
-        state.harmonic = np.hstack([amplitude[0], phase, amplitude[1]])
+        # Sizes and phases do not turn as vectors do: along the global axes first.
+        of_node = lin.system.by_node
+        u, r = ((of_node(p.real) + 1j * of_node(p.imag))[:, :2] for p in (response, reaction))
+        state.harmonic = np.hstack([np.abs(u), np.angle(u), np.abs(r)])
         state.recover = lambda: self.fields.over_period(response)
-        size, moves_only = np.abs(response), ~self.system.is_rotation
-        largest = int(np.where(moves_only, size, 0.0).argmax())
+        largest = u.ravel()[np.abs(u).argmax()]
         scalars = {
             "frequency": f,
-            "largest amplitude": float(size[moves_only].max(initial=0.0)),
-            "phase at largest": float(np.angle(response[largest])),
+            "largest amplitude": float(np.abs(largest)),
+            "phase at largest": float(np.angle(largest)),
         }
         return Accepted(self.taken, 1.0, scalars)
 
