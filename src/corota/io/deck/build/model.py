@@ -23,7 +23,7 @@ from corota.model.steps import Buckle, Static, SteadyState, Step
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from corota.io.deck.drafts import Draft, StepDraft
+    from corota.io.deck.drafts import Draft, StepDraft, TieDraft
 
 # Parts that few decks have.
 add_releases = lazy("corota.io.deck.cards.release:add_releases")
@@ -69,11 +69,12 @@ class ModelBuilder:
             self.deck.amplitudes[name] = curve.sampled(until)
         SectionBuilder(targets).build()
         model, deck = self.model, self.deck
+        # Constraints along the global axes need the axes of their nodes.
+        ties = sorted(deck.ties, key=lambda tie: tie.kind != "axes")
+        count = sum(tie.kind == "axes" for tie in ties)
+        self._ties(ties[:count])
         self._enter("sections")
-        for tie in deck.ties:
-            for view in views_in(self.meshes.views, deck, tie.card.scope):
-                with targets.inside(view):
-                    build_tie(targets, tie)
+        self._ties(ties[count:])
         if deck.has_contact:
             build_contacts(targets)
         model.amplitudes = {a.name: a for a in deck.amplitudes.values()}
@@ -101,6 +102,12 @@ class ModelBuilder:
         self._unused()
         model.notes += deck.notes
         return model
+
+    def _ties(self, ties: list[TieDraft]) -> None:
+        for tie in ties:
+            for view in views_in(self.meshes.views, self.deck, tie.card.scope):
+                with self.targets.inside(view):
+                    build_tie(self.targets, tie)
 
     def _enter(self, stage: Stage) -> None:
         """Enter the data of cards that wait for this part of the model."""

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -13,13 +14,19 @@ from corota.io.deck.build.mesh import MeshBuilder, View, view_of, views_in
 from corota.io.deck.build.sets import Elements, Sets
 from corota.io.deck.card import Refused, key, nearest
 from corota.io.deck.deck import Deck
+from corota.model.constraints import Equation, local_axes
 from corota.model.model import Model
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from corota.arrays import Floats, Ints
+    from corota.errors import Location
     from corota.io.deck.drafts import Draft, TieDraft
+
+
+#: Share of the largest coefficient of an equation below which one is none.
+ROUNDING = 1e-12
 
 
 class Targets:
@@ -54,6 +61,29 @@ class Targets:
             yield
         finally:
             self.at = before
+
+    @cached_property
+    def axes(self) -> dict[int, Floats]:
+        """Axes (columns) of the nodes that have their own."""
+        return local_axes(self.mesh, self.model.axes)
+
+    def equation(self, terms: Sequence[tuple[int, int, float]], where: Location | None) -> None:
+        """Add an equation of dofs along the global axes; one of its first node is eliminated."""
+        total: dict[tuple[int, int], float] = {}
+        for node, dof, factor in terms:
+            own = self.axes.get(node)
+            parts = [(dof, 1.0)] if own is None or dof == 2 else [*enumerate(own[dof].tolist())]
+            for place, share in parts:
+                total[node, place] = total.get((node, place), 0.0) + share * factor
+        small = ROUNDING * max(map(abs, total.values()))
+        rows = [(node, dof, c) for (node, dof), c in total.items() if abs(c) > small]
+        rows.sort(key=lambda row: -abs(row[2]) if row[0] == terms[0][0] and row[1] < 2 else 0.0)
+        self.model.constraints.append(Equation(rows, 0.0, where))
+
+    def equations(self, terms: Sequence[tuple[int, float]], where: Location | None) -> None:
+        """Let a sum of displacements, factor times vector, vanish; the first is eliminated."""
+        for way in self.axes.get(terms[0][0], np.eye(2)).T.tolist():
+            self.equation([(n, d, c * way[d]) for n, c in terms for d in (0, 1)], where)
 
     def nodes(self, draft: Draft) -> str | Ints | None:
         """Name in the mesh, or indices, of a target of supports and nodal forces."""

@@ -136,7 +136,7 @@ def _weighted(targets: Targets, tie: TieDraft) -> None:
         for dof in (0, 1):
             rows = [(int(n), dof, float(w)) for n, w in zip(chosen, part, strict=True)]
             rows.insert(1 if dof in moved else 0, (reference, dof, 1.0))
-            model.constraints.append(Equation(rows, 0.0, tie.where))
+            targets.equation(rows, tie.where)
         return
     coupling = Coupling(chosen, reference, "distributing", tie.dofs, share[chosen], "", tie.where)
     model.constraints.append(coupling)
@@ -166,9 +166,10 @@ def _between(targets: Targets, tie: TieDraft) -> None:
     if length == 0.0:
         raise InputError("the two nodes to interpolate between are at one place", tie.where)
     share = float((x[0] - x[1]) @ way) / length
-    for dof in range(3 if targets.rotating[found].all() else 2):
-        terms = [(node, dof, 1.0), (first, dof, share - 1.0), (second, dof, -share)]
-        model.constraints.append(Equation(terms, 0.0, tie.where))
+    terms = [(node, 1.0), (first, share - 1.0), (second, -share)]
+    targets.equations(terms, tie.where)
+    if targets.rotating[found].all():
+        targets.equation([(n, 2, c) for n, c in terms], tie.where)
 
 
 def _same(targets: Targets, tie: TieDraft) -> None:
@@ -181,10 +182,10 @@ def _same(targets: Targets, tie: TieDraft) -> None:
     if len(first) != len(second):
         raise InputError(f"{len(first)} nodes cannot be paired with {len(second)} nodes", tie.where)
     for a, b in zip(first.tolist(), second.tolist(), strict=True):
-        for dof in tie.dofs:
-            if a != b and (dof < 2 or (rotating[a] and rotating[b])):
-                terms = [(a, dof, 1.0), (b, dof, -1.0)]
-                targets.model.constraints.append(Equation(terms, 0.0, tie.where))
+        if a != b:
+            targets.equations([(a, 1.0), (b, -1.0)], tie.where)
+            if 2 in tie.dofs and rotating[a] and rotating[b]:
+                targets.equation([(a, 2, 1.0), (b, 2, -1.0)], tie.where)
 
 
 def _surface(targets: Targets, tie: TieDraft) -> tuple[Ints, Floats | None]:

@@ -30,7 +30,7 @@ from corota.io.deck.drafts import (
 )
 from corota.io.deck.elements import LINE_ELEMENTS
 from corota.io.deck.keywords import keyword
-from corota.model.constraints import Coupling, Equation
+from corota.model.constraints import Coupling
 from corota.model.contact import gap_element
 from corota.model.loads import Fixed
 
@@ -408,6 +408,7 @@ class _Connector:
         self, targets: Targets, section: ConnectorDraft, where: Location, nodes: list[int]
     ) -> None:
         self.deck, self.model, self.rotating = targets.deck, targets.model, targets.rotating
+        self.targets = targets
         self.section, self.where, self.nodes = section, where, nodes
         self.kind = section.kinds[0]
         points = self.model.mesh.points[nodes]
@@ -486,12 +487,15 @@ class _Connector:
             return
         if self.kind == "WELD" and self.rotating[[first, second]].any():
             self.rotating[[first, second]] = True
+        if joined == {1, 2} or ({1, 2} <= joined and not self.apart):
+            self.targets.equations([(first, 1.0), (second, -1.0)], self.where)
+            joined = joined - {1, 2}
         for component in sorted(joined):
             if component == 6:
                 if self.rotating[[first, second]].all():
                     self._equation([(first, 2, 1.0), (second, 2, -1.0)])
                 continue
-            self._equation(self._along(component, first, second, turns=joined != {1, 2}))
+            self._equation(self._along(component, first, second, turns=True))
 
     def _axis(self, component: int) -> np.ndarray:
         """Unit vector of component 1 or 2: along the line of AXIAL, else by the orientation."""
@@ -600,7 +604,7 @@ class _Connector:
             terms.append((begin, 2, arm if first == begin else -arm))
 
     def _equation(self, terms: list[tuple[int, int, float]]) -> None:
-        self.model.constraints.append(Equation(terms, 0.0, self.where))
+        self.targets.equation(terms, self.where)
 
     def damp(self) -> None:
         """Add the dashpots; check what springs and they cannot follow."""

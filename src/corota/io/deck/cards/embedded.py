@@ -14,7 +14,6 @@ from corota.io.deck.keywords import keyword
 from corota.mesh.kinds import PLANAR
 from corota.mesh.parts import nodes_of_cells
 from corota.mesh.shape_functions import shape_functions, shape_gradients
-from corota.model.constraints import Equation
 
 if TYPE_CHECKING:
     from corota.arrays import Floats, Ints
@@ -84,7 +83,7 @@ def add_embedded(targets: Targets, drafts: list[EmbeddedDraft]) -> None:
 def _follow(
     targets: Targets, draft: EmbeddedDraft, nodes: Ints, host: Ints, outside: float
 ) -> None:
-    mesh, model = targets.mesh, targets.model
+    mesh = targets.mesh
     corners = [mesh.points[_nodes(mesh, c)] for c in host.tolist()]
     low = np.array([x.min(axis=0) for x in corners]).reshape(-1, 2)
     high = np.array([x.max(axis=0) for x in corners]).reshape(-1, 2)
@@ -104,9 +103,7 @@ def _follow(
         weights = places[best][0]
         of = _nodes(mesh, int(host[near[best]])).tolist()
         terms = [(n, -w) for n, w in zip(of, weights.tolist(), strict=True) if abs(w) > ROUNDING]
-        for dof in range(2):
-            rows = [(node, dof, 1.0), *((n, dof, w) for n, w in terms)]
-            model.constraints.append(Equation(rows, 0.0, draft.card.where))
+        targets.equations([(node, 1.0), *terms], draft.card.where)
 
 
 def _natural(mesh: Mesh, cell: int, x: Floats) -> tuple[Floats, float]:
