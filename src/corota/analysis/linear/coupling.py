@@ -3,21 +3,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.linear.triplets import Triplets
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from corota.analysis.linear.triplets import Triplets
-    from corota.arrays import Floats, Ints
+    from corota.arrays import Ints
 
 
-@dataclass
 class Coupling:
-    """Contribution of contact to the linearized equations, in dofs and multipliers.
+    """What contact adds to the linearized equations, in dofs and multipliers; nothing at first.
 
     Parameters
+    ----------
+    n_dofs, n : int
+        Dofs and multipliers.
+    near : callable
+        Finds tables of dofs and multipliers (-1 none), a row for each candidate that may soon
+        couple, where the pattern grows.
+
+    Attributes
     ----------
     geometric_stiffness : Triplets
         Symmetric part at dofs, both triangles.
@@ -28,17 +37,18 @@ class Coupling:
         of the constraints.
     follow : Triplets
         Dofs by multipliers without the transposed part.
-    diagonal : ndarray, shape (n_multipliers,)
+    diagonal, rhs : ndarray, shape (n,)
+        Of the rows of the multipliers.
     force : ndarray, shape (n_dofs,)
-        Added to the right-hand side of equilibrium, in global axes.
-    near : callable
-        Finds dofs and multipliers (-1 none) of pairs that may soon couple, where the pattern grows.
+        Of tractions that are known after the correction, in global axes: added to the right-hand
+        side of equilibrium.
+    expected : int
+        Negative pivots that the constraints have.
     """
 
-    geometric_stiffness: Triplets
-    skew: Triplets
-    rows: Triplets
-    follow: Triplets
-    diagonal: Floats
-    force: Floats
-    near: Callable[[], tuple[Ints, Ints]]
+    def __init__(self, n_dofs: int, n: int, near: Callable[[], list[tuple[Ints, Ints]]]) -> None:
+        self.near = near
+        self.geometric_stiffness, self.skew = Triplets.join([]), Triplets.join([])
+        self.rows, self.follow = Triplets.join([]), Triplets.join([])
+        self.diagonal, self.rhs = np.ones(n), np.zeros(n)
+        self.force, self.expected = np.zeros(n_dofs), 0

@@ -349,19 +349,20 @@ class SaddlePointSystem:
 
     def _spare(self, c: Coupling, link: LinearizedConstraints) -> Ints:
         """Keys of couplings that may be needed soon, possibly repeated."""
-        dofs, own = c.near()
-        dofs = link.neighbors(dofs)
-        if not len(dofs):
-            return np.zeros(0, np.int64)
-        every = np.concatenate([dofs, np.where(own >= 0, own + self.nf, -1)], axis=1)
-        i, j = np.triu_indices(every.shape[1])
-        a, b = every[:, i].ravel(), every[:, j].ravel()
-        good = (a >= 0) & (b >= 0)
-        # Multipliers of one pair do not couple with each other.
-        good &= (np.minimum(a, b) < self.nf) | (a == b)
-        a, b = a[good], b[good]
-        keys: Ints = np.maximum(a, b) * self.size + np.minimum(a, b)
-        return keys
+        keys = [np.zeros(0, np.int64)]
+        for dofs, own in c.near():
+            dofs = link.neighbors(dofs)
+            if not len(dofs):
+                continue
+            every = np.concatenate([dofs, np.where(own >= 0, own + self.nf, -1)], axis=1)
+            i, j = np.triu_indices(every.shape[1])
+            a, b = every[:, i].ravel(), every[:, j].ravel()
+            good = (a >= 0) & (b >= 0)
+            # Multipliers of one pair do not couple with each other.
+            good &= (np.minimum(a, b) < self.nf) | (a == b)
+            a, b = a[good], b[good]
+            keys.append(np.maximum(a, b) * self.size + np.minimum(a, b))
+        return np.concatenate(keys)
 
     def _multiply(self, data: Floats, x: Floats) -> Floats:
         """Product of the symmetric matrix with a vector that is mostly zero."""

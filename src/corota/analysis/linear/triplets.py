@@ -38,6 +38,11 @@ class Triplets:
             np.concatenate([p.values for p in parts]),
         )
 
+    def add(self, more: Triplets) -> None:
+        """Take more entries."""
+        both = Triplets.join([self, more])
+        self.rows, self.columns, self.values = both.rows, both.columns, both.values
+
     def keep(self, chosen: Bools) -> Triplets:
         """Some of the entries."""
         return Triplets(self.rows[chosen], self.columns[chosen], self.values[chosen])

@@ -1,12 +1,9 @@
 """A system with contact for Newton's method: displacements and multipliers together.
 
 The choice of the active set and Newton's method are one loop: every correction is made with the
-current states of gaps, slips and tractions (a semismooth Newton method). The
-increment is converged when forces balance and gaps, slips and tractions satisfy the conditions
-of contact; the set is then constant.
-
-States of a correction are chosen one by one until they cycle, and such that bodies hold. Contact
-linearized about a state: what is closed stays closed and sticks.
+current states of gaps, slips and tractions (a semismooth Newton method). The increment is converged
+when forces balance and the conditions of contact hold; the set is then constant. States are chosen
+one by one until they cycle, and such that bodies hold.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -14,6 +11,7 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,7 +35,6 @@ from corota.analysis.terms.contact.gaps import (
     RightHandSides,
     sticking,
 )
-from corota.analysis.terms.contact.pair import Linearization
 from corota.errors import SingularError
 from corota.lazy import lazy
 
@@ -54,13 +51,13 @@ if TYPE_CHECKING:
 
     #: Corrections of dofs and multipliers, and negative pivots; -1 if not symmetric.
     Solution = tuple[Floats, Floats, int]
-    Linearized = tuple[Coupling, Floats, int, list[tuple[Floats, Floats]]]
+    Linearized = tuple[Coupling, list[tuple[Floats, Floats]]]
 
 # What most increments do not need.
 keeps_kink = lazy("corota.analysis.terms.contact.kinks:keeps_kink")
 along_kink = lazy("corota.analysis.terms.contact.kinks:along_kink")
 both_sides = lazy("corota.analysis.terms.contact.kinks:both_sides")
-pivoted = lazy("corota.analysis.terms.contact.pivoting:pivoted")
+pivoting = lazy("corota.analysis.terms.contact.pivoting:Pivoting")
 explanation = lazy("corota.analysis.terms.contact.output:explanation")
 pressures = lazy("corota.analysis.terms.contact.output:pressures")
 
@@ -88,12 +85,12 @@ class ContactEquations:
         self.origin: Floats = self.term.u
         self.forget()
 
-    def forget(self) -> None:
-        """Begin an attempt at the increment."""
+    def forget(self, states: States | None = None) -> None:
+        """Begin an attempt at the increment, with the committed states if none are given."""
+        if states is None and self.term.at is not None:
+            states = self.term.at.states
         #: States of the last correction. Closed constraints stay closed while their pressure does.
-        self.last: States | None = None
-        if self.term.at is not None and self.term.at.states:
-            self.last = [s.copy() for s in self.term.at.states]
+        self.last = states and [s.copy() for s in states]
         #: How often a set of states came back, and how often that of each constraint changed.
         self.seen: dict[bytes, int] = {}
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.term.pairs]
@@ -107,8 +104,7 @@ class ContactEquations:
         self.size, self.least, self.waited = np.inf, np.inf, 0
         #: How the last correction was found.
         self.stage = ""
-        #: Whether the bodies may move to another equilibrium, and from where they do.
-        self.relaxing = False
+        #: From where the bodies creep to another equilibrium, in a relaxation.
         self.since: Floats | None = None
         self.term.springs = None
         #: Kink of the contact surfaces at which the bodies may rest; how many were tried, and
@@ -128,9 +124,9 @@ class ContactEquations:
 
     def go_on(self) -> None:
         """Begin again at the equilibrium that was found, with its states."""
-        last, kink, first = self.last, self.kink, self.first_move
-        self.forget()
-        self.last, self.kink, self.first_move = last, kink, first
+        kink, first = self.kink, self.first_move
+        self.forget(self.last)
+        self.kink, self.first_move = kink, first
 
     @property
     def kink(self) -> Kink | None:
@@ -153,7 +149,10 @@ class ContactEquations:
     ) -> Outcome:
         """See :func:`corota.analysis.increment_loop.solve_increment`."""
         term, n, system, rule = self.term, self.n, self.system, self.rule
-        self.inherit_kink()
+        if term.kink is not None and system.nlgeom and not term.persistent:
+            # One side alone of the kink at which the committed equilibrium lies is none, and a
+            # correction from there may go anywhere.
+            self.kink, self.inherits = replace(term.kink, base=None), True
         z = self.start(u)
         target = np.concatenate([prescribed, z[n:]])
         most = settings.max_iterations + WAITED * PATIENCE
@@ -245,7 +244,8 @@ class ContactEquations:
 
     def _by_pivoting(self, at: Evaluation, right_sides: RightHandSides) -> Floats | None:
         """A correction with states from the whole linearized problem; None if there is none."""
-        found: tuple[Floats, States, list[Floats]] | None = pivoted(self, at, right_sides)
+        found: tuple[Floats, States, list[Floats]] | None
+        found = pivoting(self, at, right_sides).solve()
         if found is None:
             return None
         z, self.last, self.slip_directions = found
@@ -262,26 +262,16 @@ class ContactEquations:
             return False
         state = at.contact_state
         now = self.term.states(state.terms, state.multipliers, self.last)
-        return all(np.array_equal(a, b) for a, b in zip(now, self.last, strict=True))
-
-    def inherit_kink(self) -> None:
-        """Begin at the kink at which the committed equilibrium lies, if there is one.
-
-        One side of it alone is no equilibrium, and a correction from there may go anywhere.
-        """
-        kink = self.term.kink
-        if kink is not None and self.system.nlgeom and not self.term.persistent:
-            self.kink, self.inherits = replace(kink, base=None), True
+        return all(map(np.array_equal, now, self.last))
 
     def complementarity(self, at: Evaluation) -> tuple[float, int, int]:
         """Largest contact residual as a force; its pair and constraint."""
         worst = (0.0, 0, 0)
         for k, (pair, terms, (p, q)) in enumerate(self.pairs(at.contact_state)):
-            if pair.n:
-                complementarity = pair.violation(terms, p, q)
-                i = int(np.argmax(complementarity))
-                if complementarity[i] > worst[0]:
-                    worst = (float(complementarity[i]), k, i)
+            complementarity = pair.violation(terms, p, q)
+            i = int(np.argmax(complementarity))
+            if complementarity[i] > worst[0]:
+                worst = (float(complementarity[i]), k, i)
         return worst
 
     # -- one linearization ---------------------------------------------------------------
@@ -289,8 +279,12 @@ class ContactEquations:
     def moved(self, z: Floats) -> Floats:
         """A correction, whose first size is kept."""
         if not self.first_move:
-            self.first_move = float(np.abs(z[: self.n][~self.system.is_rotation]).max())
+            self.first_move = self.largest(z)
         return z
+
+    def largest(self, change: Floats) -> float:
+        """Largest displacement of a change of the unknowns [length]."""
+        return float(np.abs(change[: self.n])[~self.system.is_rotation].max())
 
     def freeze(self) -> None:
         self.corrections += 1
@@ -299,11 +293,9 @@ class ContactEquations:
 
     def solve(self, at: Evaluation, states: States, right_sides: RightHandSides) -> Solution:
         """Corrections of dofs and multipliers for states, and negative pivots of the bodies."""
-        coupling, own, expected, slopes = linearized(
-            self.term, at.contact_state, states, self.slip_directions
-        )
+        coupling, slopes = linearized(self.term, at.contact_state, states, self.slip_directions)
         force = right_sides.force + self.system.at_nodes(coupling.force)[:, None] * right_sides.own
-        rows = own[:, None] * right_sides.own
+        rows = coupling.rhs[:, None] * right_sides.own
         if right_sides.rows is not None:
             rows = rows + right_sides.rows
         release = -at.contact_state.multipliers[:, None] * right_sides.own
@@ -318,7 +310,7 @@ class ContactEquations:
                 now = np.outer(p[slips], right_sides.own) + dp[pair.first + slips]
                 new = ratio[slips, None] * now - np.outer((q - level)[slips], right_sides.own)
                 dp[pair.first + pair.n + slips] = new
-        return du, dp, negative - expected if negative >= 0 else -1
+        return du, dp, negative - coupling.expected if negative >= 0 else -1
 
     @property
     def border(self) -> SaddlePointSystem:
@@ -352,20 +344,19 @@ class ContactEquations:
     def chosen(self, contact_state: ContactState) -> States:
         """States for the next correction; the whole linearized problem once a set comes back."""
         wanted = self.term.states(contact_state.terms, contact_state.multipliers, self.last)
-        if self.last is not None:
-            changed = [a != b for a, b in zip(wanted, self.last, strict=True)]
-            for flips, new in zip(self.flips, changed, strict=True):
-                flips += new
-            if any(c.any() for c in changed):
-                key = b"".join(s.tobytes() for s in wanted)
-                self.seen[key] = self.seen.get(key, 0) + 1
-                if self.seen[key] >= PATIENCE:
-                    raise GiveUp(
-                        "the contact states cycle: the same nodes open, stick and slip as in "
-                        f"{self.seen[key] - 1} earlier iterations"
-                    )
-                self.pivoting = self.pivoting or self.seen[key] >= WAITED
-        self.last = wanted
+        last, self.last = self.last, wanted
+        if last is None or all(map(np.array_equal, wanted, last)):
+            return wanted
+        for flips, old, new in zip(self.flips, last, wanted, strict=True):
+            flips += old != new
+        key = b"".join(s.tobytes() for s in wanted)
+        self.seen[key] = self.seen.get(key, 0) + 1
+        if self.seen[key] >= PATIENCE:
+            raise GiveUp(
+                "the contact states cycle: the same nodes open, stick and slip as in "
+                f"{self.seen[key] - 1} earlier iterations"
+            )
+        self.pivoting = self.pivoting or self.seen[key] >= WAITED
         return wanted
 
     def columns(
@@ -373,15 +364,20 @@ class ContactEquations:
         at: Evaluation,
         right_sides: RightHandSides,
         states: States,
-        slip_directions: dict[tuple[int, int], float] | None = None,
+        signs: list[Floats] | None = None,
     ) -> tuple[Floats, int]:
-        """Solutions of one linearization, shape (n_dofs + n_multipliers, k)."""
+        """Solutions of one linearization, shape (n_dofs + n_multipliers, k).
+
+        Signs of slipping tractions are those of their trial values where none other than 0 is
+        given.
+        """
         self.freeze()
         self.slip_directions = [
             pair.slip_direction(terms, q) for pair, terms, (_, q) in self.pairs(at.contact_state)
         ]
-        for (k, i), slip_direction in (slip_directions or {}).items():
-            self.slip_directions[k][i] = slip_direction
+        if signs is not None:
+            each = zip(signs, self.slip_directions, strict=True)
+            self.slip_directions = [np.where(sign != 0.0, sign, own) for sign, own in each]
         du, dp, negative = self._held(at, states, right_sides)
         return np.concatenate([du, dp]), negative
 
@@ -431,57 +427,47 @@ class ContactEquations:
         for count in range(1 + WAITED):
             new = [s.copy() for s in states]
             slip_directions = list(self.slip_directions)
-            rates = self.gap_rates(at, found[0][:, 0]) if any(r.any() for r in released) else None
-            turned = False
-            for k, (s, (pair, terms, (p, q))) in enumerate(
-                zip(new, self.pairs(at.contact_state), strict=True)
-            ):
+            rates, turned = self.gap_rates(at, found[0][:, 0]), False
+            each = zip(new, self.pairs(at.contact_state), strict=True)
+            for k, (s, (pair, terms, (p, q))) in enumerate(each):
                 if not pair.rubs:
                     continue
-                p1 = p + found[1][pair.first : pair.first + pair.n, 0]
-                q1 = q + found[1][pair.first + pair.n : pair.first + pair.width, 0]
                 own = slice(pair.first + pair.n, pair.first + pair.width)
-                left = self.border.left[own] + self.border.left_by_others[own]
+                p1, q1 = p + found[1][pair.first : own.start, 0], q + found[1][own, 0]
+                left = border.left[own] + border.left_by_others[own]
                 bound = pair.bound(np.maximum(p1, p))
                 moved = (s == CLOSED) & (np.abs(left) > pair.noise) & np.isfinite(bound)
                 q1[moved] = -left[moved]
-                slips = pair.first + pair.n + np.flatnonzero(moved)
-                self.border.dropped.difference_update(slips.tolist())
-                over = moved
-                if early:
-                    over = over | (s == CLOSED) & (np.abs(q1) > EXCESS * bound)
+                border.dropped.difference_update((own.start + np.flatnonzero(moved)).tolist())
+                over = moved | early & (s == CLOSED) & (np.abs(q1) > EXCESS * bound)
                 s[over] = SLIPPING
                 slip_direction = self.slip_directions[k]
                 slip_direction = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction)
-                if rates is not None:
-                    # What stuck without traction, or goes far, takes the direction of its slip.
-                    # What slid and then slips in neither direction sticks.
-                    slip = (terms.slip + rates[k][1]) * slip_direction
-                    least = np.where(slid[k], 1.0, SMALL)
-                    wrong = released[k] & (slip > least * pair.edge * pair.full)
-                    slip_direction = np.where(wrong, -slip_direction, slip_direction)
-                    turned = turned or bool(wrong.any())
-                    s[wrong & back[k]] = CLOSED
-                    back[k] = wrong & slid[k]
+                # What stuck without traction, or goes far, takes the direction of its slip. What
+                # slid and then slips in neither direction sticks.
+                slip = (terms.slip + rates[k][1]) * slip_direction
+                least = np.where(slid[k], 1.0, SMALL)
+                wrong = released[k] & (slip > least * pair.edge * pair.full)
+                slip_direction = np.where(wrong, -slip_direction, slip_direction)
+                turned = turned or bool(wrong.any())
+                s[wrong & back[k]] = CLOSED
+                back[k] = wrong & slid[k]
                 released[k] = (released[k] | over) & (s != CLOSED)
                 slip_directions[k] = slip_direction
-            same = all(np.array_equal(a, b) for a, b in zip(new, states, strict=True))
-            if same and not turned:
+            if all(map(np.array_equal, new, states)) and not turned:
                 break
             if count == WAITED:
                 # One release overloads the next constraint, as along a rope.
                 self.pivoting = self.slides = True
                 break
             before, self.slip_directions = self.slip_directions, slip_directions
-            try:
+            with contextlib.suppress(SingularError):
                 other = self.solve(at, new, right_sides)
-            except SingularError:
-                self.slip_directions = before
-                break
-            if self._far(other[0], right_sides):
-                self.slip_directions = before
-                break
-            found, states = other, new
+                if not self._far(other[0], right_sides):
+                    found, states = other, new
+                    continue
+            self.slip_directions = before
+            break
         return found, states
 
     def _far(self, du: Floats, right_sides: RightHandSides) -> bool:
@@ -518,7 +504,7 @@ class ContactEquations:
                     continue
                 near = np.argsort(gap, kind="stable")[:count]
                 s[near[gap[near] < np.inf]] = CLOSED
-            if all(np.array_equal(a, b) for a, b in zip(tried, states, strict=True)):
+            if all(map(np.array_equal, tried, states)):
                 break
             try:
                 found = self.solve(at, tried, right_sides)
@@ -542,11 +528,10 @@ class ContactEquations:
 
     def settle(self, outcome: Outcome) -> Outcome:
         """Result of an increment in terms of the system; explains failures."""
-        u = outcome.u[: self.n].copy()
         if outcome.converged and outcome.at is not None:
             outcome.reason = self.refuse(outcome.at, outcome.u)
             outcome.converged = not outcome.reason
-        settled = replace(outcome, u=u)
+        settled = replace(outcome, u=outcome.u[: self.n].copy())
         self.contact_state = None if outcome.at is None else outcome.at.contact_state
         if not outcome.converged:
             settled.reason = f"{outcome.reason}{self.explain(outcome.at)}"
@@ -571,15 +556,14 @@ class ContactEquations:
             return unlikely
         if not self.system.nlgeom:
             return ""
-        since = None if moves else self.since
-        start = self.term.u if since is None else since
-        ends = self.term.positions(start), self.term.positions(z[: self.n])
-        still = self.pivoted and not self.relaxing and not moves
+        still = self.pivoted and self.since is None and not moves
         if still and not self.near(z[: self.n]):
             return (
                 "the equilibrium found is far from the last one: the bodies would jump in this "
                 "increment"
             )
+        start = self.term.u if moves or self.since is None else self.since
+        ends = self.term.positions(start), self.term.positions(z[: self.n])
         for k, (pair, terms, tractions) in enumerate(self.pairs(at.contact_state)):
             found = pair.passed(self.term, k, ends, terms, tractions, moves)
             if len(found):
@@ -601,8 +585,7 @@ class ContactEquations:
 
     def near(self, u: Floats) -> bool:
         """Whether an equilibrium is near the start, as far as its first correction says."""
-        moved = float(np.abs((u - self.origin)[~self.system.is_rotation]).max())
-        return not self.first_move or moved <= FAR * self.first_move
+        return not self.first_move or self.largest(u - self.origin) <= FAR * self.first_move
 
     @property
     def force(self) -> Floats:
@@ -646,41 +629,27 @@ class ContactEquations:
 def linearized(
     term: ContactTerm, at: ContactState, states: States, slip_directions: list[Floats]
 ) -> Linearized:
-    """The border for states, its right-hand side, and its negative pivots.
+    """What contact adds to the equations for states, and the signs of tractions that slip.
 
-    Behind these, of each pair: the slopes of slipping tractions, whose signs are given, over the
-    pressure and their tractions at no pressure, shapes (n,).
+    Behind it, of each pair: the slopes of slipping tractions over the pressure, and their
+    tractions at no pressure, shapes (n,).
     """
-    geometric_stiffness, skew, slopes = [], [], []
-    added = Linearization(np.ones(term.n), np.zeros(term.n), np.zeros(term.system.n_dofs))
+    near = partial(_near, term, at.terms)
+    coupling, slopes = Coupling(term.system.n_dofs, term.n, near), []
+    # Where all stick, nothing moves along the tractions, which take the skew part up: without it
+    # the matrix is symmetric, and its inertia known.
+    slips = any(bool((state == SLIPPING).any()) for state in states)
     each = zip(term.each(at.terms, at.multipliers), states, slip_directions, strict=True)
     for (pair, terms, (p, q)), state, slip_direction in each:
-        slopes.append(pair.linearize(terms, state, p, q, slip_direction, added))
+        slopes.append(pair.linearize(terms, state, p, q, slip_direction, coupling))
         if pair.active and term.system.nlgeom and (p.any() or q.any()):
             # Half way an end moves by half.
             half = 1.0 if terms.between is None else 0.5
             even, odd = second_derivatives(term, pair, half * pair.share * p, half * q)
-            geometric_stiffness.append(even)
-            skew.append(odd)
-
-    # Where all stick, nothing moves along the tractions, which take the skew part up: without it
-    # the matrix is symmetric, and its inertia known.
-    slips = any(bool((state == SLIPPING).any()) for state in states)
-
-    def near() -> tuple[Ints, Ints]:
-        each = zip(term.pairs, at.terms, strict=True)
-        return stacked([_near(term, pair, terms) for pair, terms in each])
-
-    coupling = Coupling(
-        Triplets.join(geometric_stiffness),
-        Triplets.join(skew if slips else []),
-        Triplets.join(added.rows),
-        Triplets.join(added.follow),
-        added.diagonal,
-        added.force,
-        near,
-    )
-    return coupling, added.rhs, added.expected, slopes
+            coupling.geometric_stiffness.add(even)
+            if slips:
+                coupling.skew.add(odd)
+    return coupling, slopes
 
 
 def second_derivatives(
@@ -704,31 +673,17 @@ def second_derivatives(
     return entries(0.5 * (values + turned)), entries(0.5 * (values - turned))
 
 
-def _near(term: ContactTerm, pair: Pair, terms: Terms) -> tuple[Ints, Ints]:
-    """Dofs and multipliers of candidate pairs next to closed ones."""
-    if not term.system.nlgeom or not len(terms.pair):
-        none = np.zeros((0, 0), np.int64)
-        return none, none
-    variables, constraints = pair.core.near(terms.pair)
-    own = np.where(constraints >= 0, pair.first + pair.owner[constraints], -1)
-    if pair.two:
-        own = np.concatenate([own, np.where(own >= 0, own + pair.n, -1)], axis=1)
-    return pair.dofs(variables), own
-
-
-def stacked(parts: list[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
-    """Rows of several pairs below each other, filled with -1."""
+def _near(term: ContactTerm, found: list[Terms]) -> list[tuple[Ints, Ints]]:
+    """Dofs and multipliers of the candidates of each pair next to closed ones."""
     out = []
-    for which in (0, 1):
-        tables = [p[which] for p in parts if len(p[which])]
-        width = max((t.shape[1] for t in tables), default=0)
-        full = np.full((sum(len(t) for t in tables), width), -1, np.int64)
-        first = 0
-        for table in tables:
-            full[first : first + len(table), : table.shape[1]] = table
-            first += len(table)
-        out.append(full)
-    return out[0], out[1]
+    for pair, terms in zip(term.pairs, found, strict=True):
+        if term.system.nlgeom and len(terms.pair):
+            variables, constraints = pair.core.near(terms.pair)
+            own = np.where(constraints >= 0, pair.first + pair.owner[constraints], -1)
+            if pair.two:
+                own = np.concatenate([own, np.where(own >= 0, own + pair.n, -1)], axis=1)
+            out.append((pair.dofs(variables), own))
+    return out
 
 
 def linearized_contact(
@@ -747,29 +702,19 @@ def linearized_contact(
         Step time.
     """
     term = system.term(ContactTerm)
-    if not term.pairs:
-        none, entries = np.zeros(0), Triplets.join([])
-        coupling = Coupling(entries, entries, entries, entries, none, none, lambda: stacked([]))
-        return system.evaluate(u.copy(), time), coupling, none, [], term.law_multipliers()
     if multipliers is None:
         multipliers = term.committed
     term.springs = term.trial_kink = None
     at = system.evaluate(np.concatenate([u, multipliers]), time)
-    if states is None and term.at is not None and term.at.states:
+    if states is None and term.at is not None:
         states = term.at.states
-    elif states is None:
-        states = term.states(at.contact_state.terms, multipliers)
-    states = sticking(states)
+    states = sticking(states or term.states(at.contact_state.terms, multipliers))
     ones = [np.ones(pair.n) for pair in term.pairs]
-    coupling, residuals, _, _ = linearized(term, at.contact_state, states, ones)
-    own, hard = np.zeros(term.n), np.zeros(term.n, bool)
-    for pair in term.pairs:
-        part = pair.full / pair.stiffness
-        own[pair.first : pair.first + pair.width] = np.tile(part, pair.width // pair.n)
-        hard[pair.first : pair.first + pair.width] = pair.law is None
-        # Slips of a pair with a pressure law have no compliance either.
-        hard[pair.first + pair.n : pair.first + pair.width] = True
-    bare = hard & (coupling.diagonal <= 0.0)
-    coupling.diagonal[bare] = -COMPLIANCE * own[bare]
+    coupling, _ = linearized(term, at.contact_state, states, ones)
+    # Rows without a compliance, which those of a pressure law have.
+    laws, bare = term.law_multipliers(), coupling.diagonal <= 0.0
+    bare[laws] = False
+    own = [np.tile(pair.full / pair.stiffness, 1 + pair.two) for pair in term.pairs]
+    coupling.diagonal[bare] = -COMPLIANCE * np.concatenate([np.zeros(0), *own])[bare]
     term.revert()
-    return at, coupling, residuals, states, term.law_multipliers()
+    return at, coupling, coupling.rhs, states, laws

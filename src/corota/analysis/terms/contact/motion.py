@@ -8,21 +8,15 @@ displacement that the motion would have without them,
 
 and the same for the slip and Coulomb's bound. Gaps and gradients are those of the beginning,
 so that forces conserve linear and angular momentum to rounding; errors of second order in the
-increment are corrected in the next one.
-
-A pressure law takes the mean ``(g0 + 2 g1 + g2) / 4`` of three gaps, which keeps energy; where it
-is too stiff for the increment, the gap at its end, as if there were none. Both are stable.
-
-The forces ``z = (p, q)`` of some constraints change their gaps and slips by ``A z``, where
-``A = dt^2 G M^-1 G^T`` is symmetric and at least semidefinite. Which are closed and slip, the core
-finds from the set of the increment before (`unilateral`).
+increment are corrected in the next one. A pressure law takes the mean ``(g0 + 2 g1 + g2) / 4`` of
+three gaps, which keeps energy; where it is too stiff for the increment, the gap at its end, as if
+there were none. Both are stable.
 
 Implicit increments end where separate surfaces meet: a wall does not act on a body in flight, and
 an increment limited only by its own error may end at any depth behind it. The time to contact
 follows from gap, closing velocity and acceleration of the body. At larger distance an increment
-covers most of the gap, because the estimate improves as the surfaces approach; the last one ends a
-ten-thousandth of an edge behind the first contact. Beyond the search distance there is no gap yet:
-an increment that passes through is refused and cut.
+covers most of the gap, because the estimate improves as the surfaces approach. Beyond the search
+distance there is no gap yet: an increment that passes through is refused and cut.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -50,7 +44,7 @@ from corota.errors import ConvergenceError
 from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
@@ -75,21 +69,17 @@ class ForwardContact:
     account : Energies
     dt : float
         Increment [time].
-
-    Attributes
-    ----------
-    depth : list of ndarray
-        Of each pair, overlap that is not removed [length]: the overlap
-        at the beginning of contact. It remains until the gap opens.
     """
 
     def __init__(self, system: System, account: Energies, dt: float) -> None:
         self.account, self.dt = account, dt
         contact = self.contact = system.term(ContactTerm)
+        #: Of each pair, overlap that is not removed [length]: that at the beginning of contact,
+        #: which remains until the gap opens; states, and signs of the tractions that slip.
         self.depth = [np.zeros(pair.n) for pair in contact.pairs]
         self.state = [np.full(pair.n, OPEN, np.int8) for pair in contact.pairs]
         self.sense = [np.ones(pair.n if pair.two else 0) for pair in contact.pairs]
-        # Work of the forces of the last state in the first half of what follows.
+        #: Work of the forces of the last state in the first half of what follows.
         self.pending = 0.0
         self.rubbed = [0.0] * len(contact.pairs)
         if contact.pairs and account.impact is None:
@@ -109,13 +99,11 @@ class ForwardContact:
 
         Parameters
         ----------
-        u : ndarray, shape (n_dofs,)
-        moved : ndarray, shape (n_dofs,)
-            Increment that ended at `u`.
-        ahead : ndarray, shape (n_dofs,)
-            Increment that follows without contact.
-        before : ndarray, shape (n_dofs,)
-            What it would be if no force acted on free dofs.
+        u, moved : ndarray, shape (n_dofs,)
+            Displacement, and the increment that ended at it.
+        ahead, before : ndarray, shape (n_dofs,)
+            Increment that follows without contact, and what it would be if no force acted on free
+            dofs.
         share : float
             Of the increment that the forces act over: 1, or 1/2 at the start of a motion.
         inverse : ndarray, shape (n_dofs,)
@@ -146,7 +134,14 @@ class ForwardContact:
             multipliers = problem.solve()
             force, size = contact.forces(found, multipliers)
             self._count(problem, multipliers, force, moved, ahead + problem.pushed)
-            self._commit(u, found, multipliers, force, size, time)
+            states = [state.copy() for state in self.state]
+            for pair, state in zip(contact.pairs, states, strict=True):
+                pair.core.commit()
+                pair.keep_closed(state)
+            contact.u, contact.committed, contact.time = u.copy(), multipliers, time
+            contact.at = ContactState(
+                found, force, size, multipliers, states=states, acting=found, where=x
+            )
         return force
 
     def sums(self) -> dict[str, float]:
@@ -183,27 +178,6 @@ class ForwardContact:
             pair.slid += np.where(q != 0.0, slips[i] / pair.area, 0.0)
             pair.slide(replace(terms, slip=slips[i]), self.dt)
 
-    def _commit(
-        self,
-        u: Floats,
-        found: list[Terms],
-        multipliers: Floats,
-        force: Floats,
-        size: Floats,
-        time: float,
-    ) -> None:
-        contact = self.contact
-        for pair in contact.pairs:
-            pair.core.commit()
-        contact.u, contact.committed, contact.time = u.copy(), multipliers, time
-        states = [state.copy() for state in self.state]
-        for pair, state in zip(contact.pairs, states, strict=True):
-            pair.keep_closed(state)
-        where = contact.positions(u)
-        contact.at = ContactState(
-            found, force, size, multipliers, states=states, acting=found, where=where
-        )
-
 
 class _Increment:
     """The constraints of one increment, those of all pairs one after the other."""
@@ -225,41 +199,41 @@ class _Increment:
         counts = [pair.n for pair in pairs]
         self.first = np.concatenate([[0], np.cumsum(counts)])
         self.n = int(self.first[-1])
-
-        def joined(parts: list[Floats]) -> Floats:
-            return np.concatenate(parts)
-
-        self.area, self.full = joined([t.area for t in found]), joined([p.full for p in pairs])
+        self.area = np.concatenate([terms.area for terms in found])
+        self.full = np.concatenate([pair.full for pair in pairs])
         self.tied = np.repeat([pair.tied for pair in pairs], counts)
         self.ruled = np.repeat([pair.law is not None for pair in pairs], counts)
         # Gaps below which pressure laws act, doubled for other constraints.
         starts = [0.0 if pair.law is None else max(-pair.law.start, 0.0) for pair in pairs]
         self.near = 2.0 * np.repeat(starts, counts)
-        self.friction = joined([pair.friction for pair in pairs])
+        self.friction = np.concatenate([pair.friction for pair in pairs])
         self.two = np.repeat([pair.two for pair in pairs], counts)
         self.seen = covered(self.area, self.full)
         self.tolerance = np.repeat([pair.noise for pair in pairs], counts) * self.full
         self.state = np.concatenate(own.state)
         self.sense = np.ones(self.n)
-        self.sense[self.two] = joined(own.sense)
+        self.sense[self.two] = np.concatenate(own.sense)
         # Gradients of all gaps and slips, a term per row.
         some = [k for k, terms in enumerate(found) if len(terms.constraint)] or [0]
         self.constraint = np.concatenate([self.first[k] + found[k].constraint for k in some])
         self.dofs = np.concatenate([pairs[k].dofs(found[k].variables) for k in some])
         slides = self.two[self.constraint, None]
+        slip_gradients = np.concatenate([found[k].slip_gradient for k in some])
         self.gradients = (
-            joined([found[k].gap_gradient for k in some]),
-            np.where(slides, joined([found[k].slip_gradient for k in some]), 0.0),
+            np.concatenate([found[k].gap_gradient for k in some]),
+            np.where(slides, slip_gradients, 0.0),
         )
-        gap = joined([terms.gap for terms in found])
+        gap = np.concatenate([terms.gap for terms in found])
         self.change, slid = self.travel(ahead)
         offset = self.contact.offset_at
-        now, later = (joined([offset(p, t) for p in pairs]) for t in (time, time + own.dt))
+        now, later = (
+            np.concatenate([offset(pair, t) for pair in pairs]) for t in (time, time + own.dt)
+        )
         depth = self._depth(gap)
         own.depth = self.split(depth)
         # Initial overlaps may be removed over the step.
         self.gap = gap + depth * self.area + self.change + (now - later) * self.area
-        self.slip = np.where(self.tied, joined([terms.slip for terms in found]), 0.0) + slid
+        self.slip = np.where(self.tied, np.concatenate([terms.slip for terms in found]), 0.0) + slid
         # A law takes the mean of the last three gaps: a quarter of dt^2 times the acceleration.
         self.soft = gap + 0.25 / share * (self.change - self.travel(before)[0])
 
@@ -270,12 +244,11 @@ class _Increment:
     def travel(self, moved: Floats) -> tuple[Floats, Floats]:
         """Changes of all gaps and slips by a displacement, linearized."""
         by_dof = np.append(self.contact.system.in_space(moved), 0.0)[self.dofs]
-
-        def change(gradient: Floats) -> Floats:
-            part = (gradient * by_dof).sum(axis=1)
-            return np.asarray(np.bincount(self.constraint, part, self.n), np.float64)
-
-        return change(self.gradients[0]), change(self.gradients[1])
+        gap, slip = (
+            np.bincount(self.constraint, (gradient * by_dof).sum(axis=1), self.n).astype(float)
+            for gradient in self.gradients
+        )
+        return gap, slip
 
     def _depth(self, gap: Floats) -> Floats:
         """Overlap that is not removed: that at the beginning of contact, or its remainder."""
@@ -289,8 +262,6 @@ class _Increment:
     def solve(self) -> Floats:
         """Multipliers of all pairs, shape (contact.n,)."""
         self.state[~self.seen] = OPEN
-        own = self.contact
-        multipliers = np.zeros(own.n)
         p, q = np.zeros(self.n), np.zeros(self.n)
         chosen = self.seen & (self.tied | (self.state != OPEN) | (self.gap < -self.tolerance))
         chosen |= self.seen & self.ruled & (self.gap < self.area * self.near)
@@ -307,11 +278,8 @@ class _Increment:
         self.own.state = self.split(self.state)
         each = zip(self.split(self.sense), self.own.sense, strict=True)
         self.own.sense = [sense[: len(old)] for sense, old in each]
-        for pair, a, b in zip(own.pairs, self.first[:-1], self.first[1:], strict=True):
-            multipliers[pair.first : pair.first + pair.n] = p[a:b]
-            if pair.two:
-                multipliers[pair.first + pair.n : pair.first + pair.width] = q[a:b]
-        return multipliers
+        tractions = zip(self.contact.pairs, self.split(p), self.split(q), strict=True)
+        return np.concatenate([x for pair, *both in tractions for x in both[: 1 + pair.two]])
 
     def _forces(self, chosen: Bools) -> tuple[Bools, Floats, Floats, Floats]:
         """Forces of some constraints: which can act, p and q, and the resulting motion."""
@@ -326,7 +294,6 @@ class _Increment:
         kept = np.isin(rows, here)
         rows, columns, values = np.searchsorted(here, rows[kept]), columns[kept], values[kept]
         matrix = _compliance(rows, columns, values, mass, len(here))
-        place = np.cumsum(movable) - 1
         matrix *= self.own.dt**2
         law = partial(self._law, normal)
         slope = law(np.minimum(self.gap, self.gap - self.change)[normal])[1]
@@ -336,7 +303,7 @@ class _Increment:
             matrix,
             self.gap[normal],
             self.slip[tangent],
-            place[tangent],
+            np.searchsorted(normal, tangent),
             self.friction[tangent],
             self.tied[normal],
             self.tolerance[normal],
@@ -356,15 +323,11 @@ class _Increment:
         z, state, sense = found
         self.state[normal], self.sense[tangent] = state, sense
         p, q = np.zeros(self.n), np.zeros(self.n)
-        p[normal], q[tangent] = z[: len(normal)], z[len(normal) :]
+        p[normal], q[tangent] = np.split(z, [len(normal)])
         pushed = np.zeros_like(self.inverse)
         moved = np.bincount(columns, values * z[rows], len(dofs))
         pushed[dofs] = self.own.dt**2 * mass * moved
         return movable, p, q, pushed
-
-    def _each(self) -> Iterator[tuple[Pair, int]]:
-        """Each pair, and its first constraint."""
-        return zip(self.contact.pairs, self.first.tolist(), strict=False)
 
     def _entries(self, chosen: Bools) -> tuple[Ints, Ints, Floats]:
         """Triplets of the gradients of gaps, and of slips behind them, where masses move."""
@@ -382,7 +345,7 @@ class _Increment:
     def _law(self, normal: Ints, gap: Floats) -> tuple[Floats, Floats]:
         """Pressures of the laws of some constraints at gaps, and derivatives; zero elsewhere."""
         pressure, slope = np.zeros(len(normal)), np.zeros(len(normal))
-        for pair, first in self._each():
+        for pair, first in zip(self.contact.pairs, self.first[:-1], strict=True):
             if pair.law is not None:
                 own = (normal >= first) & (normal < first + pair.n)
                 area = self.area[normal][own]
@@ -392,12 +355,12 @@ class _Increment:
 
     def _check(self, held: Bools) -> None:
         """Refuse two fixed surfaces that are pressed into each other."""
-        hard = self.seen & held & ~self.tied & ~self.ruled
-        edges = [float(pair.slave.length.mean()) for pair in self.contact.pairs]
-        wrong = hard & (self.gap < -SMALL * self.area * np.repeat(edges, np.diff(self.first)))
-        for (pair, _), own in zip(self._each(), self.split(wrong), strict=True):
-            if own.any():
-                label = self.contact.label(pair, int(np.argmax(own)))
+        held = self.seen & held & ~self.tied & ~self.ruled
+        parts = map(self.split, (held, self.gap, self.area))
+        for pair, own, gap, area in zip(self.contact.pairs, *parts, strict=True):
+            wrong = own & (gap < -SMALL * area * float(pair.slave.length.mean()))
+            if wrong.any():
+                label = self.contact.label(pair, int(np.argmax(wrong)))
                 raise ConvergenceError(
                     f"contact pair {pair.name!r}: node {label} is fixed and pressed into the other "
                     "side, which is fixed too; release one of them"
@@ -418,74 +381,37 @@ def _compliance(rows: Ints, columns: Ints, values: Floats, mass: Floats, n: int)
 
 @dataclass
 class UnilateralConstraints:
-    """Constraints of one increment.
+    """m constraints of one increment, of which t have slips."""
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (m + t, m + t)
-        Change of gaps and slips by forces p and q.
-    gap, slip : ndarray, shapes (m,) and (t,)
-        Without these forces.
-    of : ndarray of int, shape (t,)
-        Constraint that a slip belongs to.
-    friction : ndarray, shape (t,)
-    tied : ndarray of bool, shape (m,)
-        Constraints whose gap and slip stay zero.
-    tolerance : ndarray, shape (m,)
-        Gaps that are rounding.
-    soft : ndarray, shape (m,)
-        Gap that a law takes, without these forces.
-    share : ndarray, shape (m,)
-        Fraction of the change of a gap that a law sees.
-    ruled : ndarray of bool, shape (m,)
-        Constraints with a pressure law.
-    law : callable
-        Their pressures at gaps of shape (m,), and the derivatives by the gap; zero elsewhere.
-    """
-
-    matrix: Floats
-    gap: Floats
-    slip: Floats
-    of: Ints
-    friction: Floats
-    tied: Bools
-    tolerance: Floats
-    soft: Floats
-    share: Floats
-    ruled: Bools
-    law: Law
+    matrix: Floats  # change of gaps and slips by forces p and q, shape (m + t, m + t)
+    gap: Floats  # without these forces, shape (m,)
+    slip: Floats  # likewise, shape (t,)
+    of: Ints  # constraint that a slip belongs to, shape (t,)
+    friction: Floats  # shape (t,)
+    tied: Bools  # constraints whose gap and slip stay zero, shape (m,)
+    tolerance: Floats  # gaps that are rounding, shape (m,)
+    soft: Floats  # gap that a law takes, without these forces, shape (m,)
+    share: Floats  # fraction of the change of a gap that a law sees, shape (m,)
+    ruled: Bools  # constraints with a pressure law, shape (m,)
+    law: Law  # their pressures at gaps, and the derivatives by these; zero elsewhere, shape (m,)
 
     def solve(self, state: States, sense: Floats) -> tuple[Floats, States, Floats] | None:
         """Forces, states and senses of slip; None where none are found.
 
-        Laws are linearized at their gaps, from those without forces on.
-
-        Parameters
-        ----------
-        state : ndarray of int, shape (m,)
-            To start from: OPEN, CLOSED (sticks) or SLIPPING.
-        sense : ndarray, shape (t,)
-            Sign of q if it slips.
-
-        Returns
-        -------
-        z : ndarray, shape (m + t,)
-        state, sense : ndarray
+        Laws are linearized at their gaps, from those without forces on. States to start from, of
+        shape (m,), are OPEN, CLOSED (sticks) or SLIPPING; senses, of shape (t,), are signs of q.
         """
-        m, t, of, tied = len(self.gap), len(self.slip), self.of, self.tied
+        m, t, tied, own = len(self.gap), len(self.slip), self.tied, self.tied[self.of]
         rest, matrix = np.concatenate([self.gap, self.slip]), self.matrix.copy()
         matrix.flat[:: m + t + 1] *= 1.0 + COMPLIANCE * (np.append(self.ruled, np.zeros(t)) == 0.0)
-        held, start, normal, slips = np.append(tied, tied[of]), rest, np.arange(m), np.arange(t)
-        free = np.arange(m + t)
-        if tied.any():
-            # What is tied has no choice: it is eliminated.
-            normal, slips, free = (np.flatnonzero(~x) for x in (tied, tied[of], held))
-            of = np.searchsorted(normal, of[slips])
-            own = np.column_stack([matrix[np.ix_(held, free)], rest[held]])
-            back = np.linalg.solve(matrix[np.ix_(held, held)], own)
-            across = matrix[np.ix_(free, held)]
-            start = rest[free] - across @ back[:, -1]
-            matrix = matrix[np.ix_(free, free)] - across @ back[:, :-1]
+        # What is tied has no choice: it is eliminated.
+        held, normal, slips = np.append(tied, own), np.flatnonzero(~tied), np.flatnonzero(~own)
+        free, of = np.flatnonzero(~held), np.searchsorted(normal, self.of[slips])
+        known = np.column_stack([matrix[np.ix_(held, free)], rest[held]])
+        back = np.linalg.solve(matrix[np.ix_(held, held)], known)
+        across = matrix[np.ix_(free, held)]
+        start = rest[free] - across @ back[:, -1]
+        matrix = matrix[np.ix_(free, free)] - across @ back[:, :-1]
         n = len(normal)
         unit = 1.0 / np.sqrt(np.maximum(matrix.diagonal(), 1e-300))
         # Of each constraint its pressure and its traction.
@@ -501,17 +427,16 @@ class UnilateralConstraints:
         z, after, turned = np.zeros(m + t), state[normal], sense.copy()
         gap, (pressure, slope) = self.soft, self.law(self.soft)
         for _ in range(WAITED * PATIENCE):
-            if len(ruled):
-                acts = slope[law] < 0.0
-                after[ruled] = np.where(acts, np.maximum(after[ruled], CLOSED), OPEN)
-                give = np.where(acts, -1.0 / np.where(acts, slope[law], 1.0), 0.0)
-                table[ruled] = plain * (acts * self.share[law])[:, None]
-                table[ruled, 1 + 2 * ruled] += give * unit[ruled] ** 2
-                moved = self.soft[law] + self.share[law] * (start - rest[free])[ruled] - gap[law]
-                # A law that does not press at its gap is open.
-                apart = float(np.abs(table[:, 0]).max()) or 1.0
-                table[ruled, 0] = unit[ruled] * (moved - pressure[law] * give)
-                table[ruled[~acts], 0] = apart
+            acts = slope[law] < 0.0
+            after[ruled] = np.where(acts, np.maximum(after[ruled], CLOSED), OPEN)
+            give = np.where(acts, -1.0 / np.where(acts, slope[law], 1.0), 0.0)
+            table[ruled] = plain * (acts * self.share[law])[:, None]
+            table[ruled, 1 + 2 * ruled] += give * unit[ruled] ** 2
+            moved = self.soft[law] + self.share[law] * (start - rest[free])[ruled] - gap[law]
+            # A law that does not press at its gap is open.
+            apart = float(np.abs(table[:, 0]).max(initial=0.0)) or 1.0
+            table[ruled, 0] = unit[ruled] * (moved - pressure[law] * give)
+            table[ruled[~acts], 0] = apart
             found = _core.unilateral(
                 np.full(n, OPEN, np.int8), direction, friction, rubs, table[:n], table[n:], after
             )
@@ -519,8 +444,7 @@ class UnilateralConstraints:
                 return None
             _, after, direction, p, q = found
             z[free] = unit * np.append(p, q[of])
-            if tied.any():
-                z[held] = -(back[:, :-1] @ z[free] + back[:, -1])
+            z[held] = -(back[:, :-1] @ z[free] + back[:, -1])
             gap = self.soft + self.share * (self.matrix @ z)[:m]
             pressure, slope = self.law(gap)
             missed = np.abs(z[:m] - pressure)
@@ -547,34 +471,25 @@ class Approach:
     system : System
     massless : ndarray of bool, shape (n_dofs,)
         Displacements without mass; their accelerations are meaningless.
-
-    Attributes
-    ----------
-    meets : bool
-        Whether the last requested increment ends after a first contact.
-    limited : bool
-        Whether it was shortened.
     """
 
     recomputed: ClassVar[frozenset[str]] = frozenset({"system", "term", "part", "heavy"})
 
     def __init__(self, system: System, massless: Bools) -> None:
         self.system, self.term = system, system.term(ContactTerm)
+        #: Whether the last requested increment ends after a first contact; whether it was
+        #: shortened, and how many were in a row.
         self.meets = self.limited = False
         self.in_a_row = 0
         #: Displacement of the last increment by node and its time; velocities of nodes without
         #: mass oscillate about it.
         self.moved, self.dt = np.zeros((0, 3)), 0.0
         mesh = system.model.mesh
-        opens = self.term.opens
-        part = part_of_nodes(mesh) if opens else np.full(mesh.n_nodes, -1, np.int64)
+        part = part_of_nodes(mesh) if self.term.opens else np.full(mesh.n_nodes, -1, np.int64)
         heavy = np.zeros(len(part), bool)
         heavy[system.node_of_dof[~massless & ~system.is_rotation]] = True
         #: Body of each node, -1 for none, and the nodes whose mean acceleration is the body's.
         self.part, self.heavy = part, heavy & (part >= 0)
-        #: Nodes of bodies, bodies of heavy nodes, and how many each body has of these.
-        self.known, self.owner = part >= 0, part[self.heavy]
-        self.count = np.bincount(self.owner, minlength=part.max(initial=-1) + 1)
 
     def within(self, now: MotionState, dt: float, least: float) -> float:
         """The increment, or the shorter one that ends at first contact [time]."""
@@ -590,8 +505,6 @@ class Approach:
                 continue
             terms = pair.gaps_at(term, number, x)
             apart = pair.apart(terms, None if term.at is None else term.at.states[number])
-            if not apart.any():
-                continue
             seen = apart & covered(terms.area, pair.full)
             time, meets = _time_to_contact(pair, terms, seen, rates, acceleration)
             if time < until:
@@ -635,7 +548,7 @@ class Approach:
         if term.persistent:
             depth = 0.0
             for pair, terms in zip(term.pairs, state.terms, strict=True):
-                if pair.start is not None and pair.law is None and pair.n:
+                if pair.start is not None and pair.law is None:
                     deeper = np.minimum(pair.begun()[0], 0.0) - (terms.bare or terms).gap
                     edge = float(pair.slave.length.mean())
                     depth = max(depth, float((deeper / pair.full).max()) / edge)
@@ -651,13 +564,11 @@ class Approach:
 
     def _first_contact(self, state: ContactState) -> float:
         """How late the first contact of surfaces is found [slave edges]."""
-        late = 0.0
-        term = self.term
-        before = term.at
-        x = term.positions(term.u)
+        late, term = 0.0, self.term
+        before, x = term.at, term.positions(term.u)
         each = term.each(state.terms, state.multipliers)
         for number, (pair, terms, (p, q)) in enumerate(each):
-            if pair.tied or not pair.n or before is None or (self.meets and pair.start is None):
+            if pair.tied or before is None or (self.meets and pair.start is None):
                 continue
             begun = pair.gaps_at(term, number, x)
             apart = pair.apart(begun, before.states[number])
@@ -674,12 +585,11 @@ class Approach:
     def _accelerations(self, now: MotionState) -> Floats:
         """Mean acceleration of the body of each node, shape (n_nodes, 3)."""
         out = self.system.by_node(now.a)
-        if not len(self.owner):
-            return out
-        inner, size = self.part[self.known], np.maximum(self.count, 1)
+        known, owner = self.part >= 0, self.part[self.heavy]
+        count = np.bincount(owner, minlength=self.part.max(initial=-1) + 1)
         for i in (0, 1):
-            sums = np.bincount(self.owner, out[self.heavy, i], len(self.count))
-            out[self.known, i] = (sums / size)[inner]
+            sums = np.bincount(owner, out[self.heavy, i], len(count))
+            out[known, i] = (sums / np.maximum(count, 1))[self.part[known]]
         out[:, 2] = 0.0
         return out
 
@@ -688,7 +598,8 @@ class Approach:
         out = self.system.by_node(now.v)
         if self.dt:
             mean = self.moved[:, :2] / self.dt + 0.5 * self.dt * acceleration[:, :2]
-            out[self.known, :2] = mean[self.known]
+            known = self.part >= 0
+            out[known, :2] = mean[known]
         return out
 
 
@@ -696,8 +607,6 @@ def _time_to_contact(
     pair: Pair, terms: Terms, seen: Bools, rates: Floats, acceleration: Floats
 ) -> tuple[float, bool]:
     """Time to the end of the next increment towards contact, and whether contact begins there."""
-    if not seen.any():
-        return np.inf, False
     area = np.where(seen, terms.area, 1.0)
     edge = float(pair.slave.length.mean())
     gap = terms.gap / area

@@ -9,7 +9,7 @@ across a body may be outside again on its other side; such an increment is refus
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -34,6 +34,7 @@ from corota.model.contact import METHODS, ContactPair, RigidCurve, Tie
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.linear.coupling import Coupling
     from corota.analysis.numbered_model import NumberedModel
     from corota.arrays import Bools, Floats, Ints
 
@@ -49,18 +50,6 @@ WEAK = 0.2
 #: Search radius: fraction of the reach, and of the width of a body, that a node may move without
 #: this check; in relaxation, fraction of the shortest slave edge from a position to the next.
 UNSEEN = 0.5
-
-
-@dataclass
-class Linearization:
-    """What linearized constraints add to the matrix of the bodies; see :class:`Coupling`."""
-
-    diagonal: Floats  # of the rows of the multipliers, shape (n_multipliers,)
-    rhs: Floats
-    force: Floats  # of tractions that are known after the correction, shape (n_dofs,)
-    rows: list[Triplets] = field(default_factory=list)  # gradients of what is closed and sticks
-    follow: list[Triplets] = field(default_factory=list)  # what makes them unsymmetric
-    expected: int = 0  # negative pivots that the constraints have
 
 
 class Pair:
@@ -549,7 +538,7 @@ class Pair:
         p: Floats,
         q: Floats,
         slip_direction: Floats,
-        added: Linearization,
+        added: Coupling,
     ) -> tuple[Floats, Floats]:
         """Add the constraints linearized about their states; all arrays have the shape (n,).
 
@@ -568,11 +557,11 @@ class Pair:
         parts = [("gap_gradient", first, closed, share), ("slip_gradient", second, sticks, 1.0)]
         for name, start, chosen, weight in parts[: 1 + self.two]:
             k, own = terms.constraint, weight * getattr(terms, name)
-            added.rows.append(_columns(to_rows, start + k, -own, chosen[k]))
+            added.rows.add(_columns(to_rows, start + k, -own, chosen[k]))
             if acting is not terms:
-                added.follow.append(_columns(to_rows, start + k, own, chosen[k]))
+                added.follow.add(_columns(to_rows, start + k, own, chosen[k]))
                 k, own = acting.constraint, weight * getattr(acting, name)
-                added.follow.append(_columns(to_acting, start + k, -own, chosen[k]))
+                added.follow.add(_columns(to_acting, start + k, -own, chosen[k]))
         # Tractions that are known after the correction go to the right-hand side.
         known, shear = np.where(closed, 0.0, -share * p), np.zeros(self.n)
         if self.two:
@@ -581,7 +570,7 @@ class Pair:
             shear = np.where(sticks, 0.0, ratio * p + level - q)
             k = acting.constraint
             slope = -ratio[k, None] * acting.slip_gradient
-            added.follow.append(_columns(to_acting, first + k, slope, state[k] == SLIPPING))
+            added.follow.add(_columns(to_acting, first + k, slope, state[k] == SLIPPING))
         self.add_forces(acting, known, shear, added.force)
         return ratio, level
 

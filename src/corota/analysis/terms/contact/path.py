@@ -1,13 +1,9 @@
 """A system with contact on an equilibrium path: dofs, then multipliers, and the load factor.
 
-Lengths are those of displacements alone. Every attempt begins with the states of the last
-commit; a point's own states give the direction of the path there.
-
-Where contact changes its states along a path, to first order: the predictor passes kinks.
-
-From an equilibrium the direction of the path holds until the first gap closes, the first pressure
-vanishes or the first traction reaches the friction bound. From there the direction is that of
-the new states, oriented so that the change continues.
+Every attempt begins with the states of the last commit; a point's own states give the direction of
+the path there. It holds until the first gap closes, the first pressure vanishes or the first
+traction reaches the friction bound. From there the direction is that of the new states, oriented so
+that the change continues: to first order the predictor passes such kinks.
 
 Source: the pivoting of parametric linear complementarity, R. W. Cottle, J.-S. Pang and R. E. Stone,
 *The Linear Complementarity Problem* (2009), ch. 4.5.
@@ -32,7 +28,7 @@ from corota.analysis.terms.contact.gaps import (
     RightHandSides,
     covered,
 )
-from corota.analysis.terms.contact.pivoting import pivoted
+from corota.analysis.terms.contact.pivoting import Pivoting
 from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:
@@ -98,11 +94,8 @@ class ContactPathEquations(ContactEquations):
     def restart(self, loose: bool = False, like: Evaluation | None = None) -> None:
         """Begin an attempt with the states of the last commit, or of another evaluation."""
         self.term.revert()
-        self.forget()
+        self.forget((like and like.contact_state.settled) or self._base)
         self._fresh, self.holds = False, loose
-        first = (like and like.contact_state.settled) or self._base
-        if first is not None:
-            self.last = [s.copy() for s in first]
 
     def take_over(self, at: Evaluation, last: Evaluation) -> None:
         """Take the tangent of flow; what slips goes on: its traction alone could stick as well."""
@@ -140,27 +133,16 @@ class ContactPathEquations(ContactEquations):
 
         The pivots are those of the bodies: one for each closed constraint is taken off.
         """
-        begins = self._fresh and not self.corrections and not at.contact_state.settled
-        found = self._first_states(at, force, move) if begins else None
-        states, slip_directions = found or (self._settled(at), None)
+        n, found = self.n, None
+        if self._fresh and not self.corrections and not at.contact_state.settled:
+            # With a small first load: what touches without pressure may open, stick or slip, and
+            # so may what is at its bound.
+            load = RightHandSides(SMALL * force[:n, None], SMALL * move[:n, None], np.ones(1))
+            found = Pivoting(self, at, load).solve()
+        _, states, signs = found or (None, self._settled(at), None)
         if self._fresh:
             self._base = states
-        return self.rate_with(at, states, force, move, slip_directions)
-
-    def _first_states(
-        self, at: Evaluation, force: Floats, move: Floats
-    ) -> tuple[States, dict[tuple[int, int], float]] | None:
-        """States with a small first load, and signs of slip, from the whole linearized problem.
-
-        What touches without pressure may open, stick or slip, and so may what is at its bound.
-        """
-        n = self.n
-        load = RightHandSides(SMALL * force[:n, None], SMALL * move[:n, None], np.ones(1))
-        found = pivoted(self, at, load)
-        if found is None:
-            return None
-        _, states, signs = found
-        return states, {(k, i): sign for k, own in enumerate(signs) for i, sign in enumerate(own)}
+        return self.rate_with(at, states, force, move, signs)
 
     def rate_with(
         self,
@@ -168,12 +150,12 @@ class ContactPathEquations(ContactEquations):
         states: States,
         force: Floats,
         move: Floats,
-        slip_directions: dict[tuple[int, int], float] | None = None,
+        signs: list[Floats] | None = None,
     ) -> tuple[Floats, int]:
-        """The same with given states, and senses of slip of some (pair, constraint)."""
+        """The same with given states, and signs of slipping tractions; 0 where not given."""
         self.holds = False
         right_sides = RightHandSides(force[: self.n, None], move[: self.n, None], np.zeros(1))
-        x, negative = self.columns(at, right_sides, states, slip_directions)
+        x, negative = self.columns(at, right_sides, states, signs)
         return x[:, 0], negative
 
     def around(
@@ -184,7 +166,7 @@ class ContactPathEquations(ContactEquations):
         `size` is the distance to go, by the metric.
         """
         committed = self.term.at
-        if committed is None or not committed.states:
+        if committed is None:
             return None
         self._base = None
         way = EventPath(self, base, tangent, [s.copy() for s in committed.states])
@@ -218,19 +200,20 @@ class ContactPathEquations(ContactEquations):
         """
         if self.term.at is None:
             return 0.0
-        gaps = self.gap_rates(at, rate[: self.n])
+        each = zip(
+            self.term.each(at.contact_state.terms, rate[self.n :]),
+            self.gap_rates(at, rate[: self.n]),
+            self.term.at.states,
+            self._settled(at),
+            strict=True,
+        )
         total = 0.0
-        for k, (pair, (dp, _)) in enumerate(
-            zip(self.term.pairs, self.term.parts(rate[self.n :]), strict=True)
-        ):
-            before, now = self.term.at.states[k], self._settled(at)[k]
-            area = np.maximum(at.contact_state.terms[k].area, pair.full)
+        for (pair, terms, (dp, _)), (dgap, dslip), before, now in each:
             closed, opened = (before == OPEN) & (now != OPEN), (before != OPEN) & (now == OPEN)
-            total += float((dp * area)[closed].sum())
-            total += float((gaps[k][0] * pair.stiffness)[opened].sum())
             slid = (before == CLOSED) & (now == SLIPPING)
-            slip = at.contact_state.terms[k].slip
-            total += float((np.sign(slip) * gaps[k][1] * pair.stiffness)[slid].sum())
+            total += float((dp * np.maximum(terms.area, pair.full))[closed].sum())
+            total += float((dgap * pair.stiffness)[opened].sum())
+            total += float((np.sign(terms.slip) * dslip * pair.stiffness)[slid].sum())
         return total
 
     def has_corner(self, base: Point, point: Point, period: float) -> bool:
@@ -275,34 +258,41 @@ class EventPath:
         self.gaps = [terms.gap for terms in self.at.contact_state.terms]
         self.z, self.factor = base.u, base.factor
         self.seen = {(k, i, int(s[i])) for k, s in enumerate(states) for i in range(len(s))}
-        self.slip_directions: dict[tuple[int, int], float] = {}
+        #: Signs of the tractions of what slips since; 0 elsewhere.
+        self.signs = [np.zeros(len(s)) for s in states]
         self._changed = False
+
+    @property
+    def moves(self) -> list[tuple[Floats, Floats]]:
+        """Changes of gaps and slips of each pair along the direction."""
+        return self.path.gap_rates(self.at, self.tangent.u[: self.path.n])
+
+    def tractions(self, z: Floats) -> list[tuple[Floats, Floats]]:
+        """Pressures and shear tractions of each pair in all unknowns, or in their changes."""
+        return self.path.term.parts(z[self.path.n :])
 
     def go(self, distance: float) -> None:
         """Go on along the direction."""
-        rates = self.path.gap_rates(self.at, self.tangent.u[: self.path.n])
-        self.gaps = [gap + distance * rate for gap, (rate, _) in zip(self.gaps, rates, strict=True)]
+        each = zip(self.gaps, self.moves, strict=True)
+        self.gaps = [gap + distance * rate for gap, (rate, _) in each]
         self.z = self.z + distance * self.tangent.u
         self.factor += distance * self.tangent.factor
 
     def change(self, k: int, i: int, state: int, period: float) -> bool:
         """Give a constraint another state; False where it had it before."""
-        path = self.path
-        pair = path.term.pairs[k]
-        slides = path.gap_rates(self.at, self.tangent.u[: path.n])[k][1][i]
-        if pair.rubs and self.states[k][i] == OPEN and slides != 0.0:
+        slides = self.moves[k][1][i]
+        if self.path.term.pairs[k].rubs and self.states[k][i] == OPEN and slides != 0.0:
             # A constraint that closes while sliding continues to slip, if possible.
-            state, self.slip_directions[k, i] = SLIPPING, -float(np.sign(slides))
+            state, self.signs[k][i] = SLIPPING, -np.sign(slides)
         elif state == SLIPPING:
-            q = path.term.parts(self.z[path.n :])[k][1][i]
-            dq = path.term.parts(self.tangent.u[path.n :])[k][1][i]
-            self.slip_directions[k, i] = 1.0 if (q or dq) > 0.0 else -1.0
+            q, dq = (self.tractions(z)[k][1][i] for z in (self.z, self.tangent.u))
+            self.signs[k][i] = 1.0 if (q or dq) > 0.0 else -1.0
         if (k, i, state) in self.seen:
             return False
         if not self._changed:
             # The core's derivatives are those of what was evaluated last.
-            path.restart()
-            self.at = path.evaluate(self.base.u.copy(), self.base.factor * period)
+            self.path.restart()
+            self.at = self.path.evaluate(self.base.u.copy(), self.base.factor * period)
             self._changed = True
         self.seen.add((k, i, state))
         self.states[k][i] = state
@@ -313,7 +303,7 @@ class EventPath:
         path = self.path
         try:
             x, negative = path.rate_with(
-                self.at, self.states, *path.load_rate(self.base.u), self.slip_directions
+                self.at, self.states, *path.load_rate(self.base.u), self.signs
             )
         except SingularError:
             return False
@@ -328,28 +318,25 @@ class EventPath:
 
     def _going(self, where: tuple[int, int], before: int, state: int) -> float:
         """Positive where the direction leads into a new state."""
-        (k, i), path = where, self.path
-        dp, dq = path.term.parts(self.tangent.u[path.n :])[k]
-        dgap, dslip = path.gap_rates(self.at, self.tangent.u[: path.n])[k]
+        k, i = where
+        (dp, dq), (dgap, dslip) = self.tractions(self.tangent.u)[k], self.moves[k]
         if state == OPEN:
             return float(dgap[i])
         if before == OPEN:
             return float(dp[i])
-        q = path.term.parts(self.z[path.n :])[k][1][i]
-        slip_direction = self.slip_directions.get((k, i), 1.0 if q > 0.0 else -1.0)
+        sign = self.signs[k][i] or (1.0 if self.tractions(self.z)[k][1][i] > 0.0 else -1.0)
         if state == SLIPPING:
-            return float(-slip_direction * dslip[i])
+            return float(-sign * dslip[i])
         # A constraint that sticks again unloads.
-        return float(path.term.pairs[k].friction[i] * dp[i] - slip_direction * dq[i])
+        return float(self.path.term.pairs[k].friction[i] * dp[i] - sign * dq[i])
 
     def first(self, latest: tuple[int, int] | None) -> Event | None:
         """The next change along the direction; of several at once, that of the latest first."""
         best: Event | None = None
-        path, term = self.path, self.path.term
-        tractions, rates = (term.parts(z[path.n :]) for z in (self.z, self.tangent.u))
-        moves = path.gap_rates(self.at, self.tangent.u[: path.n])
-        for k, pair in enumerate(term.pairs):
-            if pair.tied or pair.law is not None or not pair.n:
+        tractions, rates = (self.tractions(z) for z in (self.z, self.tangent.u))
+        moves = self.moves
+        for k, pair in enumerate(self.path.term.pairs):
+            if pair.tied or pair.law is not None:
                 continue
             (p, q), (dp, dq), (dgap, dslip) = tractions[k], rates[k], moves[k]
             state, seen = self.states[k], covered(self.at.contact_state.terms[k].area, pair.full)
@@ -362,10 +349,8 @@ class EventPath:
                 for sign in (1.0, -1.0):
                     margin = _reach(mu * p - sign * q, sign * dq - mu * dp, sticks)
                     found.append((margin, SLIPPING))
-                slip_direction = np.sign(q)
-                for (_, i), other in (d for d in self.slip_directions.items() if d[0][0] == k):
-                    slip_direction[i] = other
-                found.append((_reach(0.0 * q, dslip * slip_direction, state == SLIPPING), CLOSED))
+                signs = np.where(self.signs[k] != 0.0, self.signs[k], np.sign(q))
+                found.append((_reach(0.0 * q, dslip * signs, state == SLIPPING), CLOSED))
             for ways, new in found:
                 i = int(np.argmin(ways))
                 if latest is not None and latest[0] == k and ways[latest[1]] <= ways[i]:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from corota.analysis.linear.types import Kind
     from corota.analysis.terms.contact.equations import ContactEquations
     from corota.analysis.terms.contact.gaps import States
-    from corota.arrays import Bools, Floats, Ints
+    from corota.arrays import Floats, Ints
 
     #: Correction of dofs and multipliers, its states, signs of slipping tractions.
     Found = tuple[Floats, States, list[Floats]]
@@ -55,16 +55,16 @@ class Pivoting:
         self.pairs = list(problem.pairs(at.contact_state))
         #: Constraints of one problem (its cost grows with the cube); a tenth may be open at first.
         self.most = math.isqrt(AT_ONCE)
+        #: Constraints with an opposite surface, and those of these that may change their state.
+        self.seen = [covered(terms.area, pair.full) for pair, terms, _ in self.pairs]
+        self.able = [
+            seen & (pair.separates and pair.law is None and pair.shear_limit == np.inf)
+            for seen, (pair, _, _) in zip(self.seen, self.pairs, strict=True)
+        ]
 
-    def solve(self, bases: list[States]) -> Found | None:
-        """Correction of dofs and multipliers, its states and senses; None where none is found.
-
-        Parameters
-        ----------
-        bases : list of list of ndarray
-            Initial states, the best first; states with a singular tangent are skipped.
-        """
-        for base in bases:
+    def solve(self) -> Found | None:
+        """Correction of dofs and multipliers, its states and senses; None where none is found."""
+        for base in self._bases():
             chosen: list[Ints] | None = self._first(base)
             while chosen is not None and any(map(len, chosen)):
                 try:
@@ -73,38 +73,38 @@ class Pivoting:
                     break
                 if found is None:
                     break
-                z, states, slip_directions = found
-                chosen = self._violated(z, states, chosen)
+                chosen = self._violated(found[0], found[1], chosen)
                 if chosen is None:
-                    return z, states, slip_directions
+                    return found
         return None
+
+    def _bases(self) -> list[States]:
+        """Initial states, the best first."""
+        problem, state = self.problem, self.at.contact_state
+        first = problem.term.states(state.terms, state.multipliers)
+        starts = [first] if problem.last is None else [problem.last, first]
+        # With all closed constraints sticking, bodies held by friction are constrained and the
+        # matrix is symmetric.
+        bases: dict[bytes, States] = {}
+        for states in [*map(sticking, starts), *starts]:
+            base = [
+                np.where(seen, s, OPEN).astype(np.int8)
+                for s, seen in zip(states, self.seen, strict=True)
+            ]
+            bases.setdefault(b"".join(s.tobytes() for s in base), base)
+        return list(bases.values())
 
     # -- which constraints ------------------------------------------------------------
 
-    def _able(self, k: int) -> Bools:
-        """Constraints that may change their state."""
-        pair, terms, _ = self.pairs[k]
-        if pair.tied or pair.law is not None or pair.shear_limit < np.inf or not pair.separates:
-            return np.zeros(pair.n, bool)
-        able: Bools = covered(terms.area, pair.full) & np.isfinite(pair.stiffness)
-        return able
-
     def _first(self, base: States) -> list[Ints]:
         """Closed constraints, and the nearest open ones."""
-        wanted = []
-        for k, (pair, terms, _) in enumerate(self.pairs):
-            able = self._able(k)
-            gap = np.where(able & (base[k] == OPEN), terms.gap * pair.stiffness, np.inf)
-            near = np.argsort(gap, kind="stable")[: self.most // 10]
-            mask = able & (base[k] != OPEN)
-            mask[near[np.isfinite(gap[near])]] = True
-            wanted.append(mask)
-        return self._listed(wanted)
-
-    def _listed(self, wanted: list[Bools]) -> list[Ints]:
         left, out = self.most, []
-        for mask in wanted:
-            out.append(np.flatnonzero(mask)[:left])
+        for able, state, (pair, terms, _) in zip(self.able, base, self.pairs, strict=True):
+            gap = np.where(able & (state == OPEN), terms.gap * pair.stiffness, np.inf)
+            near = np.argsort(gap, kind="stable")[: self.most // 10]
+            wanted = able & (state != OPEN)
+            wanted[near[np.isfinite(gap[near])]] = True
+            out.append(np.flatnonzero(wanted)[:left])
             left -= len(out[-1])
         return out
 
@@ -124,12 +124,11 @@ class Pivoting:
                 q1 = q + z[n + pair.first + pair.n : n + pair.first + pair.width]
                 over = (np.abs(q1) - pair.friction * np.maximum(p1, 0.0)) * terms.area > small
                 bad |= (states[k] == CLOSED) & over
-            bad &= self._able(k)
+            bad &= self.able[k]
             bad[chosen[k]] = True
-            wanted.append(bad)
-        count = sum(int(w.sum()) for w in wanted)
-        more = sum(map(len, chosen)) < count <= self.most
-        return self._listed(wanted) if more else None
+            wanted.append(np.flatnonzero(bad))
+        count = sum(map(len, wanted))
+        return wanted if sum(map(len, chosen)) < count <= self.most else None
 
     # -- the linearized problem -------------------------------------------------------
 
@@ -252,19 +251,3 @@ class Pivoting:
                 out[k].append(np.where(held[k], inside, outside))
         none = np.zeros((0, dp.shape[1]))
         return np.concatenate(out[0]), np.concatenate([none, *out[1]])
-
-
-def pivoted(problem: ContactEquations, at: Evaluation, right_sides: RightHandSides) -> Found | None:
-    """A correction with states from the whole linearized problem; None if there is none."""
-    pairs = list(problem.pairs(at.contact_state))
-    first = problem.term.states(at.contact_state.terms, at.contact_state.multipliers)
-    starts = [first] if problem.last is None else [problem.last, first]
-    # With all closed constraints sticking, bodies held by friction are constrained and the matrix
-    # is symmetric.
-    bases = [sticking(b) for b in starts] + [[s.copy() for s in b] for b in starts]
-    for base in bases:
-        for s, (pair, terms, _) in zip(base, pairs, strict=True):
-            s[~covered(terms.area, pair.full)] = OPEN
-    key = [b"".join(s.tobytes() for s in base) for base in bases]
-    bases = [base for i, base in enumerate(bases) if key[i] not in key[:i]]
-    return Pivoting(problem, at, right_sides).solve(bases)

@@ -1,10 +1,10 @@
 """Solve an increment with contact by pseudo-transient continuation, where Newton's method fails.
 
 The equilibrium that an increment starts from may end: a node passes a corner, a hook snaps. The
-bodies then move through states that are not in equilibrium until they rest again. Here they creep
-through a pseudo-time: springs hold every node at its last position, the bodies move to where their
-forces and those of the springs balance, the springs follow, and become softer from position to
-position. Implicit Euler for a viscous motion is the same, with steps that grow as it comes to rest.
+bodies then creep through a pseudo-time until they rest again: springs hold every node at its last
+position, the bodies move to where their forces and those of the springs balance, the springs
+follow, and become softer from position to position. Implicit Euler for a viscous motion is the
+same, with steps that grow as it comes to rest.
 
 Where surfaces change what they meet, gaps may jump, and a position without overlap that balances
 may not exist on either side. As in Moreau's time stepping, the conditions on the way are therefore
@@ -81,144 +81,124 @@ def relax(
     nearby : bool
         Whether no node may move farther than half of the shortest edge of the slave surfaces.
     """
-    creep = _Creep(rule, system, u, prescribed, step_time, settings, report)
-    if nearby:
-        creep.within = u.copy()
-    return creep.problem.settle(creep.run()), creep.problem
+    creep = _Creep(system, rule, step_time, settings, report)
+    return creep.settle(creep.run(u, prescribed, nearby)), creep
 
 
-class _Creep:
+class _Creep(ContactEquations):
     """The positions of one relaxation."""
 
     def __init__(
         self,
-        rule: Rule,
         system: System,
-        u: Floats,
-        prescribed: Floats,
+        rule: Rule,
         step_time: float,
         settings: Settings,
         report: Callable[[int, ResidualNorms, float, str], None] | None,
     ) -> None:
-        self.system, self.step_time, self.report = system, step_time, report
-        self.problem = ContactEquations(system, rule)
-        self.z = self.problem.start(u)
-        self.left = np.append(prescribed - u, np.zeros(self.problem.term.n))
+        super().__init__(system, rule)
+        self.step_time, self.report = step_time, report
         most = settings.max_iterations + WAITED * PATIENCE
         self.settings = replace(settings, max_iterations=most, patience=PATIENCE, reuse=None)
-        self.corrections = 0
-        #: Displacement at which the corrections of a position begin.
-        self.begun = u
+        #: Corrections of all positions.
+        self.made = 0
         #: What is said of the equilibrium that is found.
         self.said = ""
-        #: Displacements that the bodies have to stay near.
-        self.within: Floats | None = None
-        edges = [float(p.slave.length.min()) for p in self.problem.term.pairs]
+        edges = [float(pair.slave.length.min()) for pair in self.term.pairs]
         self.farthest = UNSEEN * min(edges)
-        self.stiffness = self.problem.term.nodal
 
-    def run(self) -> Outcome:
+    def run(self, u: Floats, prescribed: Floats, nearby: bool) -> Outcome:
         """Positions until one needs no springs."""
+        self.z, self.left = self.start(u), np.append(prescribed - u, np.zeros(self.term.n))
         share, reason = FIRST, ""
-        while self.corrections < MOST and share <= FIRST**-2:
+        while self.made < MOST and share <= FIRST**-2:
             failed = self._place(share)
             if failed:
                 share, reason = share / EASED**2, failed
                 continue
             share = FIRST if self.left.any() else share * EASED
-            if self._leaves(self.z):
+            if nearby and self._leaves(self.z):
                 break
             if share >= SMALL:
                 continue
             out = self._at_rest()
-            if out.converged and self._leaves(out.u):
+            if out.converged and nearby and self._leaves(out.u):
                 break
             if out.converged:
-                out.iterations = self.corrections
-                out.note = f"found by relaxation in {self.corrections} iterations{self.said}"
+                out.iterations = self.made
+                out.note = f"found by relaxation in {self.made} iterations{self.said}"
                 return out
             share, reason = SMALL / EASED**WAITED**2, out.reason
         reason = (
-            f"relaxation found no equilibrium in {self.corrections} iterations"
+            f"relaxation found no equilibrium in {self.made} iterations"
             f"{f' ({reason})' if reason else ''}"
         )
-        return Outcome(False, self.z, None, self.corrections, reason=reason)
-
-    def _largest(self, change: Floats) -> float:
-        """Largest displacement of a change of the unknowns [length]."""
-        return float(np.abs(change[: self.problem.n])[~self.system.is_rotation].max())
+        return Outcome(False, self.z, None, self.made, reason=reason)
 
     def _leaves(self, z: Floats) -> bool:
         """Whether a position is farther from the start than it may be."""
-        if self.within is None:
-            return False
-        return self._largest(z[: self.problem.n] - self.within) > self.farthest
+        return self.largest(z[: self.n] - self.origin) > self.farthest
 
     def _begin(self) -> None:
         """Begin corrections from the last position, with its states; slips count from there."""
-        problem, states = self.problem, self.problem.last
-        problem.forget()
-        problem.last, problem.relaxing = states, True
-        self.begun = problem.since = self.z[: problem.n].copy()
+        self.forget(self.last)
+        self.since = self.z[: self.n].copy()
         # In dynamics rates are those of the whole increment.
-        problem.term.slip_start = None if problem.rule.moves else self.begun
+        self.term.slip_start = None if self.rule.moves else self.since
 
     def _place(self, share: float) -> str:
         """Move to the next position, with springs of a fraction of the nodal stiffness.
 
-        Returns
-        -------
-        str
-            Why there is none; empty if there is.
+        Returns why there is none; empty if there is.
         """
-        problem, states = self.problem, self.problem.last
+        states = self.last
         self._begin()
-        problem.pivoting = True
-        problem.term.springs = (share * self.stiffness, self.begun)
+        assert self.since is not None
+        self.pivoting = True
+        self.term.springs = (share * self.term.nodal, self.since)
         try:
             reason = self._corrected(share)
         except (ElementFailure, GiveUp, SingularError) as error:
             reason = str(error)
         if reason:
-            problem.last = states
+            self.last = states
         return reason
 
     def _corrected(self, share: float) -> str:
         """Corrections of one position."""
-        problem, time, rule = self.problem, self.step_time, self.problem.rule
         z, removed = self.z, REMOVED
-        far = self._largest(self.left)
+        far = self.largest(self.left)
         part = min(1.0, 0.5 * self.farthest / far) if far > 0.0 else 1.0
         left = part * self.left
-        at = self.system.evaluate(z, time, rule)
+        at = self.evaluate(z, self.step_time, self.rule)
         for _ in range(PATIENCE):
             self._keep_overlap(at, removed)
-            dz, _ = problem.correct(at, -at.residual, left)
+            dz, _ = self.correct(at, -at.residual, left)
             z, left, removed = z + dz, np.zeros_like(left), 0.0
-            self.corrections += 1
-            if not self._largest(z - self.z) <= self.farthest:
+            self.made += 1
+            if not self.largest(z - self.z) <= self.farthest:
                 return "the bodies move too far at once"
-            at = self.system.evaluate(z, time, rule)
+            at = self.evaluate(z, self.step_time, self.rule)
             self._keep_overlap(at, 0.0)
-            norms = problem.residual_norms(at, z)
+            norms = self.residual_norms(at, z)
             if self.report is not None:
                 note = f"relaxation, springs {share:.1g}; {norms.note}".strip("; ")
-                self.report(self.corrections, norms, self._largest(dz), note)
+                self.report(self.made, norms, self.largest(dz), note)
             if norms.size <= ERROR:
                 break
         else:
             if share < ERROR:
                 return f"no convergence in {PATIENCE} iterations (residual {norms.size:.1e})"
-        reason = problem.refuse(at, z)
+        reason = self.refuse(at, z)
         if not reason:
             self.z, self.left = z, (1.0 - part) * self.left
         return reason
 
     def _keep_overlap(self, at: Evaluation, removed: float) -> None:
         """Make the conditions those on rates: of an overlap, only a part is a gap to close."""
-        if self.problem.rule.moves:
+        if self.rule.moves:
             return  # inertia takes the bodies past a jump
-        for pair, terms in zip(self.problem.term.pairs, at.contact_state.terms, strict=True):
+        for pair, terms in zip(self.term.pairs, at.contact_state.terms, strict=True):
             if not pair.tied and pair.law is None:
                 terms.gap = terms.gap - (1.0 - removed) * np.minimum(terms.gap, 0.0)
 
@@ -228,46 +208,45 @@ class _Creep:
         Friction acts against the slips of the whole increment. Where no equilibrium with these is
         found, as behind a jump, friction of the way is over, and slips count from the position.
         """
-        problem = self.problem
         out = self._unsprung(None)
-        if out.converged or problem.rule.moves or not any(pair.rubs for pair in problem.term.pairs):
+        if out.converged or self.rule.moves or not any(pair.rubs for pair in self.term.pairs):
             return out
-        out = self._unsprung(self.z[: problem.n].copy())
+        out = self._unsprung(self.z[: self.n].copy())
         if out.converged and out.at is not None:
             self._count_slips(out.at, out.u)
             self.said = ", with friction against slips from the position of rest"
         return out
 
     def _unsprung(self, slip_start: Floats | None) -> Outcome:
-        problem, states, before = self.problem, self.problem.last, self.corrections
+        states, before = self.last, self.made
         self._begin()
-        problem.term.springs, problem.term.slip_start = None, slip_start
+        self.term.springs, self.term.slip_start = None, slip_start
 
         def report(iteration: int, norms: ResidualNorms, correction: float, note: str) -> None:
-            self.corrections = before + iteration
+            self.made = before + iteration
             if self.report is not None:
                 said = f"relaxation, no springs; {note}".strip("; ")
-                self.report(self.corrections, norms, correction, said)
+                self.report(self.made, norms, correction, said)
 
-        z, time, rule = self.z, self.step_time, problem.rule
+        z, time = self.z, self.step_time
         try:
-            out = newton(problem, z, z, time, self.settings, None, report, rule)
+            out = newton(self, z, z, time, self.settings, None, report, self.rule)
         except SingularError as error:
             out = Outcome(False, z, None, reason=f"singular tangent: {error}")
-            self.corrections += 1
+            self.made += 1
         if out.converged and out.at is not None:
-            out.reason = problem.refuse(out.at, out.u)
+            out.reason = self.refuse(out.at, out.u)
             out.converged = not out.reason
         if not out.converged:
-            problem.last = states
+            self.last = states
         return out
 
     def _count_slips(self, at: Evaluation, z: Floats) -> None:
         """Take the slips of the whole way, of which friction did work."""
-        term, state, n = self.problem.term, at.contact_state, self.problem.n
+        term, state = self.term, at.contact_state
         term.slip_start = None
         rates = [(pair.rate, pair.friction) for pair in term.pairs]
-        whole = term.evaluate(z[:n], state.multipliers, state.time, np.zeros(0))
+        whole = term.evaluate(z[: self.n], state.multipliers, state.time, np.zeros(0))
         for terms, of_way in zip(state.terms, whole.terms, strict=True):
             terms.slip = of_way.slip
         for pair, (rate, friction) in zip(term.pairs, rates, strict=True):
