@@ -33,6 +33,8 @@ pub const LEAST_TURN: f64 = 0.872_664_625_997_164_8;
 /// The same on a slave that meets a master with corners: 20 degrees. Its gaps are means over edges,
 /// and would let it drop into the master's corner when that has passed a node.
 pub const LEAST_TURN_AT_CORNERS: f64 = 0.349_065_850_398_865_9;
+/// Least turn at a vertex between flat members of a master, as no mesh of a round has [rad]: 3 degrees.
+const BLUNT: f64 = 0.05;
 /// Tilt of an edge out of the cone between the normals of a corner's sides, with which the corner
 /// still meets it [rad]: edges dent. Beyond it a side of the corner meets the edge.
 pub const DENT: f64 = 0.35;
@@ -48,7 +50,7 @@ pub const STEEP: f64 = 0.5;
 /// Most turn of a fillet [rad]: somewhat less than half a turn.
 const MOST_TURN: f64 = 3.1;
 /// Turn of a surface from which it is round and not flat.
-const ROUND: f64 = 1e-3;
+pub const ROUND: f64 = 1e-3;
 /// Most variables of an edge and a corner.
 const OWN: usize = 9;
 
@@ -564,10 +566,10 @@ pub fn round(surface: &Surface, x: &[[f64; 3]]) -> Vec<bool> {
     round
 }
 
-/// The members beyond the sharp corners at both ends of each member of a master.
-pub fn across_corners(master: &Surface, x: &[[f64; 3]]) -> Vec<[Option<usize>; 2]> {
+/// The members beyond both ends of each member of a master where it turns left by more than `least`.
+pub fn across(master: &Surface, x: &[[f64; 3]], least: f64) -> Vec<[Option<usize>; 2]> {
     let mut across = vec![[None; 2]; master.len()];
-    for corner in sharp(master, x, LEAST_TURN, false) {
+    for corner in sharp(master, x, least, false) {
         let (Some(i), Some(j)) = (corner.before, corner.behind) else { continue };
         (across[i][1], across[j][0]) = (Some(j), Some(i));
     }
@@ -614,13 +616,19 @@ fn fillets(master: &Surface, x: &[[f64; 3]], longest: f64) -> Vec<Corner> {
     list
 }
 
-/// Which members of a master are pieces of a fillet, and which of their ends are at sharp corners or
-/// in a fillet.
+/// Which members of a master are pieces of a fillet, and which of their ends are at vertices or in a
+/// fillet.
 pub fn at_corners(master: &Surface, x: &[[f64; 3]], longest: f64) -> (Vec<bool>, Vec<[bool; 2]>) {
     let (mut fillet, mut ends) = (vec![false; master.len()], vec![[false; 2]; master.len()]);
-    for corner in sharp(master, x, LEAST_TURN, false) {
-        corner.before.iter().for_each(|&j| ends[j][1] = true);
-        corner.behind.iter().for_each(|&j| ends[j][0] = true);
+    let normal = |j: usize, which: usize| normal_at(&master.place(j, x), which);
+    let flat = |j: usize| turn([normal(j, 0), normal(j, 1)]).abs() <= ROUND;
+    for (i, behind) in followers(master, x).iter().enumerate() {
+        if let Some(j) = *behind
+            && let turn = turn([normal(i, 1), normal(j, 0)])
+            && (turn > LEAST_TURN || (turn.abs() > BLUNT && flat(i) && flat(j)))
+        {
+            (ends[i][1], ends[j][0]) = (true, true);
+        }
     }
     for j in fillets(master, x, longest).iter().flat_map(Corner::pieces) {
         (fillet[j], ends[j]) = (true, [true; 2]);

@@ -13,13 +13,13 @@
 //! Elsewhere functions are positive.
 //!
 //! Where the master ends within an edge with biorthogonal functions, xi runs over the covered part, as
-//! if the edge ended there: else the area of a node would be negative. It ends at sharp corners of the
-//! master, too: of the gap beside a corner, which opens to both sides, the functions would see a
-//! negative value at a node that is apart. Fillets smaller than two edges are such corners, under which
+//! if the edge ended there: else the area of a node would be negative. It ends at vertices of the
+//! master, too: of the gap beside a vertex, which opens to both sides, the functions would see a
+//! negative value at a node that is apart. Fillets smaller than two edges are corners, under which
 //! functions are positive. An end that a support guides is none.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::super::corners::{STEEP, at_corners, open_ends, round};
+use super::super::corners::{self, DENT, STEEP, across, at_corners, open_ends, round};
 use super::super::curve::{Curve, GAUSS, dot, lift, middle_of, outward, times, unit};
 use super::super::master::{Master, Surface};
 use super::super::search::each;
@@ -349,6 +349,8 @@ pub struct Mortar {
     /// Which masters are pieces of a fillet, and which of their ends are corners.
     fillet: Vec<bool>,
     corner: Vec<[bool; 2]>,
+    /// The masters beyond the convex vertices at both ends of each master.
+    across: Vec<[Option<usize>; 2]>,
 }
 
 impl Discretization for Mortar {
@@ -373,8 +375,7 @@ impl Discretization for Mortar {
         closed: &dyn Fn(usize) -> bool,
     ) -> Vec<Station> {
         let of_edge = |i: usize| {
-            let mut overlaps = overlaps(sides, i, x);
-            clip_occluded(&mut overlaps);
+            let overlaps = self.seen(sides, i, x);
             let slave = Master::Curve(sides.slave.edges[i].place(x));
             let closed = sides.slave.constraints[i][..sides.slave.edges[i].n_nodes]
                 .iter()
@@ -424,7 +425,33 @@ impl Mortar {
         let inner = all.clone().map(|i| dual(i, false)).collect();
         let free: Vec<bool> = all.map(|i| dual(i, ends[i].contains(&true))).collect();
         let (fillet, corner) = at_corners(&sides.master, x, longest);
-        Self { dual: free.clone(), inner, free, curvature, fillet, corner }
+        let across = across(&sides.master, x, corners::ROUND);
+        Self { dual: free.clone(), inner, free, curvature, fillet, corner, across }
+    }
+
+    /// What a slave edge sees of its candidates, one behind the other the closest.
+    fn seen(&self, sides: &Sides, i: usize, x: &[[f64; 3]]) -> Vec<Overlap> {
+        let mut overlaps = overlaps(sides, i, x);
+        overlaps.retain(|o| !self.has_passed(sides, o, x));
+        clip_occluded(&mut overlaps);
+        overlaps
+    }
+
+    /// Whether a slave edge has passed a master over a convex vertex: it sees the master behind it,
+    /// inclined, but the face beyond the vertex is what it is outside of, or less deep in.
+    fn has_passed(&self, sides: &Sides, o: &Overlap, x: &[[f64; 3]]) -> bool {
+        if o.gap >= 0.0 {
+            return false;
+        }
+        let (i, j) = sides.candidates()[o.pair];
+        let (edge, master) = (sides.slave.edges[i].place(x), sides.master.place(j, x));
+        let xi = 0.5 * (o.values[0] + o.values[1]);
+        let (p, n) = (edge.at(xi), unit(outward(edge.slope(xi))));
+        let hit = master.closest(p);
+        let inclined = dot(master.normal(&hit), n) > -DENT.cos();
+        let other = self.across[j][usize::from(hit.r > 0.0)];
+        let beyond = |k: usize| sides.master.place(k, x).closest(p).gap > hit.gap;
+        inclined && hit.r.abs() > 1.0 && other.is_some_and(beyond)
     }
 
     /// Height of a master over the chord of a slave edge, whose functions take a gap for linear.
@@ -435,8 +462,7 @@ impl Mortar {
     }
 
     fn edge(&self, sides: &Sides, i: usize, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
-        let mut overlaps = overlaps(sides, i, x);
-        clip_occluded(&mut overlaps);
+        let overlaps = self.seen(sides, i, x);
         let terms = |o: &Overlap| {
             let part = if self.dual[i] { self.part(sides, &overlaps, o) } else { None };
             let covered = part.as_ref().filter(|c| !c.is_whole());

@@ -16,7 +16,7 @@
 //! about to pass would be caught at its side.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::super::corners::{DENT, KEPT, across_corners};
+use super::super::corners::{DENT, KEPT, LEAST_TURN, across};
 use super::super::curve::{Curve, Vec2, dot, outward, sub, unit};
 use super::super::master::{Hit, Master};
 use super::super::search::{self, Candidate, Item, each};
@@ -40,8 +40,8 @@ const ROUND: f64 = 4.0;
 /// Part of a facet beside its ends that is left to its nodes: there both say the same.
 const BESIDE: f64 = 0.01;
 
-/// Part of half an edge by which a node may pass its end before another edge takes over; not at a
-/// concave corner, where it would go into the other edge meanwhile.
+/// Part of half an edge, of the shorter of both, by which a node may pass its end before another edge
+/// takes over; not at a concave corner, where it would go into the other edge meanwhile.
 const HOLD: f64 = 0.05;
 /// Overclosure with another edge that is none, part of half an edge.
 const CLEAR: f64 = 1e-9;
@@ -90,12 +90,14 @@ pub fn choose(
         })
         .collect();
     let best = found.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
-    if let Some(held) = found.iter().find(|f| Some(f.pair) == last)
-        && held.beyond <= HOLD
-        && held.distance <= best.distance + HOLD * held.size
-        && (held.beyond <= 0.0 || best.gap >= -CLEAR * best.size)
-    {
-        return last;
+    if let Some(held) = found.iter().find(|f| Some(f.pair) == last) {
+        let least = HOLD * held.size.min(best.size);
+        if held.beyond * held.size <= least
+            && held.distance <= best.distance + least
+            && (held.beyond <= 0.0 || best.gap >= -CLEAR * best.size)
+        {
+            return last;
+        }
     }
     if best.beyond <= 0.0 {
         return Some(best.pair);
@@ -319,7 +321,7 @@ impl NodeToSegment {
                 })
             })
             .collect();
-        let across = if sides.corners { across_corners(&sides.master, x) } else { Vec::new() };
+        let across = if sides.corners { across(&sides.master, x, LEAST_TURN) } else { Vec::new() };
         let held = [vec![None; n], vec![None; n]];
         Self { next, length, radius, from, to, until, across, of_facet, held }
     }
